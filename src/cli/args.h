@@ -6,10 +6,15 @@
 #include <stdint.h>
 
 #include "base/text.h"
-#include "cli/completion.h"
+
+typedef enum mt_shell { MT_SHELL_BASH, MT_SHELL_ZSH, MT_SHELL_COUNT } mt_shell;
+
+/* A script for this shell that completes commands, options, their values and files, from the
+ * tables of --help. */
+void mt_completion(mt_shell shell, mt_text *out);
 
 /*
- * The command line in tables of commands, options and exit statuses (commands.c), which drive
+ * The command line in tables of commands, options and exit statuses, which drive
  * the parser, --help, the manual page and "did you mean".
  */
 typedef enum mt_option_id {
@@ -148,9 +153,6 @@ typedef enum mt_format {
     MT_FORMAT_HTML,
     MT_FORMAT_SARIF
 } mt_format;
-enum { MT_FORMATS = MT_FORMAT_SARIF + 1 };
-/* The word of --format for this format; NULL where the command does not take it. */
-const char *mt_format_of(int format, int command);
 
 /* The forms of --progress. AUTO: a line that is rewritten on a terminal, else a plain line now
  * and then. */

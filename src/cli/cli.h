@@ -97,4 +97,8 @@ void mt_help(int command, mt_text *out);
  * `column`; the caller has already written up to there for the first line. */
 void mt_help_fill(const char *s, int column, mt_text *out);
 
+/* A size on the command line: a whole number of bytes, or with k, M, G, T (1024 each). Fails:
+ * MT_E_USAGE. */
+mt_status mt_limits_read_size(const char *text, uint64_t *bytes, mt_err *err);
+
 #endif

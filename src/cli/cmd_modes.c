@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune modes: natural frequencies and shapes of one configuration, or of all. */
-#include "cli/cmd_modes.h"
-
+/* modetune modes and mac: natural frequencies and shapes, and two sets of modes. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "analysis/analysis.h"
 #include "analysis/damping.h"
 #include "analysis/lowest.h"
 #include "answer/warnings.h"
 #include "base/format.h"
 #include "cli/cli.h"
-#include "cli/watch.h"
+#include "cli/terminal.h"
 #include "report/table.h"
+
+/* Natural frequencies and shapes of one configuration, or of all. */
 
 /* Shapes of modes at the sensors, or, without sensors, as motions of the bodies. */
 typedef struct mode_shapes {
@@ -24,6 +25,42 @@ typedef struct mode_shapes {
     double length_m;   /* length at which an angle is compared with a displacement */
     double *largest;   /* [modes] largest displacement of a body or at a sensor */
 } mode_shapes;
+
+/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided
+ * modes, and for all modes where one is undecided. */
+static int index_of_mode(const mt_modes *modes, int pos)
+{
+    const bool has = modes->kind[pos] == MT_MODE_FLEXIBLE && modes->n_undecided == 0;
+    return has ? mt_modal_index(modes, pos) : 0;
+}
+
+static const char *mode_kind_name(mt_mode_kind kind)
+{
+    switch (kind) {
+    case MT_MODE_FLEXIBLE:
+        return "flexible";
+    case MT_MODE_RIGID_BODY:
+        return "rigid_body";
+    case MT_MODE_UNDECIDED:
+        return "undecided";
+    case MT_MODE_UNSTABLE:
+        break;
+    }
+    return "unstable";
+}
+
+/* The number of positions to show for `count` requested vibration modes (0: all), including
+ * rigid-body and unstable ones. */
+static int modes_shown(const mt_modes *modes, int count)
+{
+    int flexible = 0;
+    for (int i = 0; i < modes->count; i++) {
+        if (modes->kind[i] == MT_MODE_FLEXIBLE && count > 0 && ++flexible > count) {
+            return i;
+        }
+    }
+    return modes->count;
+}
 
 /* What modes --damped adds. */
 
@@ -167,8 +204,9 @@ static void damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
 static const double ROUNDING = 64.0 * DBL_EPSILON;
 static const double UNSEEN = 1e-12;
 
-mt_status mt_shapes_at(mt_analysis *a, int ns, const int *channels, int n, const int *positions,
-                       double *value, mt_err *err)
+/* Shapes at given channels of the given positions: value ns x n. */
+static mt_status shapes_at(mt_analysis *a, int ns, const int *channels, int n,
+                           const int *positions, double *value, mt_err *err)
 {
     for (int i = 0; i < n; i++) {
         MT_TRY(mt_analysis_shape(a, positions[i], ns, channels, value + ((ptrdiff_t)i * ns),
@@ -219,7 +257,7 @@ static mt_status at_sensors(mt_analysis *a, int modes, mt_arena *mem, mode_shape
     for (int i = 0; i < modes; i++) {
         positions[i] = i;
     }
-    return mt_shapes_at(a, out->n, channels, modes, positions, out->value, err);
+    return shapes_at(a, out->n, channels, modes, positions, out->value, err);
 }
 
 /* Size of component k of column i, an angle times the model's length. */
@@ -334,7 +372,7 @@ typedef struct view {
 static void json_mode(mt_json_writer *w, const view *v, int i)
 {
     const mt_modes *const m = v->m;
-    const int index = mt_modes_index(m, i);
+    const int index = index_of_mode(m, i);
     int size = 1;
     (void)mt_modal_cluster(m, i, &size);
     mt_json_open(w, NULL, '{');
@@ -346,7 +384,7 @@ static void json_mode(mt_json_writer *w, const view *v, int i)
     mt_json_put_string(w, "name", mt_mode_name(v->s, v->c, index));
     mt_json_put_number(w, "frequency_hz", mt_modal_hz(m, i));
     mt_json_put_number(w, "frequency_error_hz", mt_modal_error_hz(m, i));
-    mt_json_put_string(w, "kind", mt_mode_kind_name(m->kind[i]));
+    mt_json_put_string(w, "kind", mode_kind_name(m->kind[i]));
     mt_json_put_number(w, "omega_squared", m->lambda[i]);
     mt_json_put_number(w, "omega_squared_error", m->error[i]);
     mt_json_put_integer(w, "repeated", size);
@@ -491,17 +529,16 @@ static void fill_table(mt_table *t, const view *v, bool csv)
     const mt_modes *const m = v->m;
     const bool with_error = csv || any_rough(v);
     for (int i = 0; i < v->shown; i++) {
-        const int index = mt_modes_index(m, i);
+        const int index = index_of_mode(m, i);
         char text[24];
         (void)mt_snprintf(text, sizeof text, "%d", index);
         if (csv) {
             mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
         }
         mt_table_text(t, index > 0 ? text : NULL);
-        mt_table_text(t,
-                      csv ? mt_mode_kind_name(m->kind[i])
-                          : (m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
-                                                              : mt_mode_kind_name(m->kind[i])));
+        mt_table_text(t, csv ? mode_kind_name(m->kind[i])
+                             : (m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
+                                                                 : mode_kind_name(m->kind[i])));
         mt_table_number(t, mt_modal_hz(m, i), HZ_DIGITS);
         if (with_error && (csv || is_rough(m, i))) {
             mt_table_number(t, mt_modal_error_hz(m, i), RATIO_DIGITS);
@@ -528,7 +565,7 @@ static void print_shapes(const view *v, mt_text *out)
     mt_table_column(&t, v->shapes.sensors ? "sensor" : "body", "channel", MT_ALIGN_LEFT);
     for (int i = 0; i < v->shown; i++) {
         char heading[40];
-        const int index = mt_modes_index(v->m, i);
+        const int index = index_of_mode(v->m, i);
         (void)mt_snprintf(heading, sizeof heading, index > 0 ? "mode %d" : "(%d)",
                           index > 0 ? index : i + 1);
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
@@ -590,7 +627,7 @@ static void write_solution_notes(const view *v, mt_text *out)
         int size = 1;
         const int first = mt_modal_cluster(m, i, &size);
         if (size > 1 && first == i && m->kind[i] == MT_MODE_FLEXIBLE) {
-            const int index = mt_modes_index(m, i);
+            const int index = index_of_mode(m, i);
             mt_text_addf(out,
                          "  Modes %d to %d are repeated: only the space that their shapes span "
                          "is determined.\n",
@@ -682,7 +719,7 @@ static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, in
     if (rc != MT_OK || v.m == NULL) {
         goto done;
     }
-    v.shown = mt_modes_shown(v.m, v.count);
+    v.shown = modes_shown(v.m, v.count);
     if (to->args->given[MT_OPT_SHAPES]) {
         rc = v.l != NULL ? shapes_of_lowest(v.l, v.shown, &mem, &v.shapes, err)
                          : shapes_of(v.a, v.shown, &mem, &v.shapes, err);
@@ -774,5 +811,399 @@ int mt_cmd_modes(const mt_args *args, mt_text *out)
 done:
     mt_table_free(&to.table);
     mt_loaded_model_free(&s);
+    return code;
+}
+
+/* Two sets of modes: paired and correlated at the sensors that both models have. */
+
+/* Two different modes of one model whose MAC at the sensors is above this look the same there:
+ * a correlation with either says little about which. Common practice in modal testing calls 0.9
+ * a correlation (Ewins, Modal Testing, section on MAC). */
+static const double LOOKS_THE_SAME = 0.9;
+
+enum { MAC_DIGITS = 5, PAIR_TEXT = 32, NOTE_TEXT = 160 };
+
+/* One of the two sides. */
+typedef struct side {
+    const char *letter;
+    mt_loaded_model s;
+    mt_analysis *a;
+    int *channels; /* [ns] the common ones, in this system */
+    int n;         /* vibration modes compared */
+    int *position; /* [n] */
+    double *shape; /* ns x n */
+} side;
+
+typedef struct comparison {
+    side a;
+    side b;
+    int ns;
+    double *scale; /* [ns] of displacements and angles together; NULL: of one kind */
+    double *mac;   /* a.n x b.n */
+    int *pair;     /* [a.n] */
+    mt_arena mem;
+} comparison;
+
+static const char *side_configuration(const side *x)
+{
+    return mt_loaded_model_configuration(&x->s, x->s.configurations[0]);
+}
+
+/* "MODEL:CONFIGURATION", split at the last colon that is not part of a folder's name. */
+static int load_compared_side(const mt_args *args, const char *text, comparison *c, side *x)
+{
+    const char *const colon = strrchr(text, ':');
+    const bool split = colon != NULL && strchr(colon, '/') == NULL;
+    const char *path = text;
+    const char *configuration = NULL;
+    if (split) {
+        path = mt_arena_strndup(&c->mem, text, (size_t)(colon - text));
+        configuration = colon + 1;
+    }
+    if (path == NULL) {
+        mt_terminal_error("out of memory");
+        return MT_EXIT_SYSTEM;
+    }
+    const int code = mt_loaded_model_load(args, path, configuration, &x->s);
+    if (code == MT_EXIT_DONE && x->s.n_configurations != 1) {
+        mt_terminal_error("\"%s\" has %d configurations: name one, as %s:%s", path,
+                          x->s.n_configurations, path, side_configuration(x));
+        return MT_EXIT_INPUT;
+    }
+    return code;
+}
+
+static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
+{
+    const mt_modes *const m = &x->a->modes;
+    x->position = mt_arena_int(&c->mem, (size_t)m->count);
+    MT_TRY(mt_arena_check(&c->mem, err));
+    for (int i = 0; i < m->count && x->n < wanted; i++) {
+        if (m->kind[i] == MT_MODE_FLEXIBLE) {
+            x->position[x->n++] = i;
+        }
+    }
+    x->shape = mt_arena_f64(&c->mem, (size_t)c->ns, (size_t)x->n);
+    MT_TRY(mt_arena_check(&c->mem, err));
+    MT_TRY(shapes_at(x->a, c->ns, x->channels, x->n, x->position, x->shape, err));
+    mt_channels_weigh(c->ns, c->scale, x->n, x->shape);
+    return MT_OK;
+}
+
+static mt_status correlate(comparison *c, int count, mt_err *err)
+{
+    MT_TRY(mt_loaded_model_analyse(&c->a.s, c->a.s.configurations[0], count, &c->a.a, err));
+    MT_TRY(mt_loaded_model_analyse(&c->b.s, c->b.s.configurations[0], count, &c->b.a, err));
+    mt_common_channels common;
+    MT_TRY(mt_analysis_common_channels(c->a.a, c->b.a, &c->mem, &common, err));
+    if (common.n == 0) {
+        return mt_fail(err, MT_E_INPUT,
+                       "the two have no sensor and direction in common (%d channels in A, %d "
+                       "in B)",
+                       c->a.a->sys->n_channels, c->b.a->sys->n_channels);
+    }
+    c->ns = common.n;
+    c->a.channels = common.a;
+    c->b.channels = common.b;
+    const mt_system *const sys = c->a.a->sys;
+    MT_TRY(mt_channels_scale(sys, c->ns, common.a, sys->length_m, &c->mem, &c->scale, err));
+    const int wanted = count > 0 ? count : c->ns;
+    MT_TRY(choose_modes(c, &c->a, wanted, err));
+    MT_TRY(choose_modes(c, &c->b, wanted, err));
+    c->mac = mt_arena_f64(&c->mem, (size_t)c->a.n, (size_t)c->b.n);
+    c->pair = mt_arena_int(&c->mem, (size_t)c->a.n);
+    MT_TRY(mt_arena_check(&c->mem, err));
+    mt_mac_matrix(c->ns, c->a.n, c->a.shape, c->b.n, c->b.shape, c->mac);
+    return mt_mac_pair(c->a.n, c->b.n, c->mac, c->pair, &c->mem, err);
+}
+
+/* Modes of one side that the sensors cannot tell apart, and other doubts, as sentences; emit
+ * writes one. */
+typedef void (*emit_note)(void *context, const char *text);
+
+static mt_status note_alike(comparison *c, const side *x, emit_note emit, void *context,
+                            mt_err *err)
+{
+    const int n = x->n;
+    double *const own = mt_arena_f64(&c->mem, (size_t)n, (size_t)n);
+    MT_TRY(mt_arena_check(&c->mem, err));
+    mt_mac_matrix(c->ns, n, x->shape, n, x->shape, own);
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < j; i++) {
+            const double mac = own[i + ((ptrdiff_t)j * n)];
+            if (mac > LOOKS_THE_SAME) {
+                char text[NOTE_TEXT];
+                (void)mt_snprintf(
+                    text, sizeof text,
+                    "modes %d and %d of %s look the same at the sensors (MAC %.4f)", i + 1,
+                    j + 1, x->letter, mac);
+                emit(context, text);
+            }
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status notes(comparison *c, emit_note emit, void *context, mt_err *err)
+{
+    const int most = c->a.n > c->b.n ? c->a.n : c->b.n;
+    if (most > c->ns) {
+        char text[NOTE_TEXT];
+        (void)mt_snprintf(
+            text, sizeof text,
+            "%d sensor channels cannot tell %d modes apart: shapes beyond %d depend "
+            "on each other there",
+            c->ns, most, c->ns);
+        emit(context, text);
+    }
+    if (c->scale != NULL) {
+        char text[NOTE_TEXT];
+        (void)mt_snprintf(text, sizeof text,
+                          "the sensors mix displacements and rotations: a rotation counts as "
+                          "its arc at %.4g m, the length of A's model",
+                          c->a.a->sys->length_m);
+        emit(context, text);
+    }
+    MT_TRY(note_alike(c, &c->a, emit, context, err));
+    return note_alike(c, &c->b, emit, context, err);
+}
+
+/* A cluster of repeated modes of A, and the modes of B that its members are paired with. */
+typedef struct subspace {
+    int first; /* 0-based mode of A */
+    int size;
+    int n_b;
+    double *cos2; /* [min(size, n_b)] */
+} subspace;
+
+/* The cluster of A that begins at mode i; size 1 where it does not. */
+static mt_status subspace_at(comparison *c, int i, subspace *out, mt_err *err)
+{
+    const mt_modes *const m = &c->a.a->modes;
+    int size = 1;
+    const int first = mt_modal_cluster(m, c->a.position[i], &size);
+    *out = (subspace){.first = i, .size = 1};
+    if (size < 2 || first != c->a.position[i]) {
+        return MT_OK;
+    }
+    out->size = size < c->a.n - i ? size : c->a.n - i;
+    const size_t ns = (size_t)c->ns;
+    double *const b = mt_arena_f64(&c->mem, ns, (size_t)out->size);
+    out->cos2 = mt_arena_f64(&c->mem, (size_t)out->size, 1);
+    MT_TRY(mt_arena_check(&c->mem, err));
+    for (int k = 0; k < out->size; k++) {
+        const int j = c->pair[i + k];
+        if (j >= 0) {
+            memcpy(b + ((size_t)out->n_b * ns), c->b.shape + ((size_t)j * ns), ns * sizeof *b);
+            out->n_b++;
+        }
+    }
+    return mt_mac_subspace(c->ns, out->size, c->a.shape + ((size_t)i * ns), out->n_b, b,
+                           out->cos2, &c->mem, err);
+}
+
+static double hz(const side *x, int mode)
+{
+    return mt_modal_hz(&x->a->modes, x->position[mode]);
+}
+
+static mt_table pairs_table(const comparison *c)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "A", "a", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "B", "b", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "MAC", "mac", MT_ALIGN_POINT);
+    mt_table_column(&t, "A [Hz]", "frequency_a_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "B [Hz]", "frequency_b_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "B - A [%]", "difference_percent", MT_ALIGN_POINT);
+    for (int i = 0; i < c->a.n; i++) {
+        const int j = c->pair[i];
+        if (j >= 0) {
+            mt_table_integer(&t, i + 1);
+            mt_table_integer(&t, j + 1);
+            mt_table_number(&t, c->mac[i + ((ptrdiff_t)j * c->a.n)], MAC_DIGITS);
+            mt_table_number(&t, hz(&c->a, i), DIGITS);
+            mt_table_number(&t, hz(&c->b, j), DIGITS);
+            mt_table_change(&t, 100.0 * (hz(&c->b, j) / hz(&c->a, i) - 1.0), 3);
+        }
+    }
+    return t;
+}
+
+static void json_note(void *context, const char *text)
+{
+    mt_json_put_string(context, NULL, text);
+}
+
+static mt_status json_subspaces(comparison *c, mt_json_writer *w, mt_err *err)
+{
+    mt_json_open(w, "subspaces", '[');
+    subspace s = {.size = 1};
+    for (int i = 0; i < c->a.n; i += s.size) {
+        MT_TRY(subspace_at(c, i, &s, err));
+        if (s.size > 1) {
+            mt_json_open(w, NULL, '{');
+            mt_json_put_integer(w, "first_a", i + 1);
+            mt_json_put_integer(w, "modes", s.size);
+            mt_json_open_flat(w, "mac", '[');
+            for (int k = 0; k < s.n_b; k++) {
+                mt_json_put_number(w, NULL, s.cos2[k]);
+            }
+            mt_json_close(w);
+            mt_json_close(w);
+        }
+    }
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static mt_status write_mac_json(comparison *c, mt_json_writer *w, mt_err *err)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_open(w, "pairs", '[');
+    for (int i = 0; i < c->a.n; i++) {
+        const int j = c->pair[i];
+        if (j >= 0) {
+            mt_json_open(w, NULL, '{');
+            mt_json_put_integer(w, "a", i + 1);
+            mt_json_put_integer(w, "b", j + 1);
+            mt_json_put_number(w, "mac", c->mac[i + ((ptrdiff_t)j * c->a.n)]);
+            mt_json_put_number(w, "frequency_a_hz", hz(&c->a, i));
+            mt_json_put_number(w, "frequency_b_hz", hz(&c->b, j));
+            mt_json_close(w);
+        }
+    }
+    mt_json_close(w);
+    mt_json_open(w, "matrix", '[');
+    for (int i = 0; i < c->a.n; i++) {
+        mt_json_open_flat(w, NULL, '[');
+        for (int j = 0; j < c->b.n; j++) {
+            mt_json_put_number(w, NULL, c->mac[i + ((ptrdiff_t)j * c->a.n)]);
+        }
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    MT_TRY(json_subspaces(c, w, err));
+    mt_json_open_flat(w, "vibration_modes", '[');
+    mt_json_put_integer(w, NULL, mt_modal_vibrations(&c->a.a->modes));
+    mt_json_put_integer(w, NULL, mt_modal_vibrations(&c->b.a->modes));
+    mt_json_close(w);
+    mt_json_open_flat(w, "channels", '[');
+    for (int k = 0; k < c->ns; k++) {
+        mt_json_put_string(w, NULL, c->a.a->sys->channels[c->a.channels[k]].name);
+    }
+    mt_json_close(w);
+    mt_json_open(w, "notes", '[');
+    MT_TRY(notes(c, json_note, w, err));
+    mt_json_close(w);
+    mt_json_close(w);
+    return MT_OK;
+}
+
+static void text_note(void *context, const char *text)
+{
+    mt_text_addf(context, "  Note: %s.\n", text);
+}
+
+static void text_matrix(const comparison *c, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    char heading[PAIR_TEXT];
+    mt_table_column(&t, "A \\ B", "a", MT_ALIGN_RIGHT);
+    for (int j = 0; j < c->b.n; j++) {
+        (void)mt_snprintf(heading, sizeof heading, "%d", j + 1);
+        mt_table_column(&t, heading, heading, MT_ALIGN_RIGHT);
+    }
+    for (int i = 0; i < c->a.n; i++) {
+        mt_table_integer(&t, i + 1);
+        for (int j = 0; j < c->b.n; j++) {
+            const double mac = c->mac[i + ((ptrdiff_t)j * c->a.n)];
+            (void)mt_snprintf(heading, sizeof heading, "%.3f", mac);
+            mt_table_text(&t, isfinite(mac) ? heading : NULL);
+        }
+    }
+    mt_text_add(out, "\nMAC matrix\n");
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+}
+
+/* Write which modes of one side are compared. */
+static void write_side(const side *x, mt_text *out)
+{
+    const int all = mt_modal_vibrations(&x->a->modes);
+    mt_text_addf(out, "%s: %s, %s, ", x->letter, x->s.path, side_configuration(x));
+    if (x->n < all) {
+        mt_text_addf(out, "the lowest %d of %d vibration modes\n", x->n, all);
+    } else {
+        mt_text_addf(out, "all %d vibration modes\n", x->n);
+    }
+}
+
+static mt_status write_mac_text(comparison *c, mt_text *out, mt_err *err)
+{
+    write_side(&c->a, out);
+    write_side(&c->b, out);
+    mt_text_addf(out, "%d common sensor channels\n\n", c->ns);
+    mt_table t = pairs_table(c);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+    text_matrix(c, out);
+    subspace s = {.size = 1};
+    for (int i = 0; i < c->a.n; i += s.size) {
+        MT_TRY(subspace_at(c, i, &s, err));
+        if (s.size > 1) {
+            mt_text_addf(out, "  Repeated modes %d to %d of A as a space: MAC", i + 1,
+                         i + s.size);
+            for (int k = 0; k < s.n_b; k++) {
+                mt_text_addf(out, " %.5f", s.cos2[k]);
+            }
+            mt_text_add(out, "\n");
+        }
+    }
+    return notes(c, text_note, out, err);
+}
+
+static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err *err)
+{
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_table t;
+    switch (format) {
+    case MT_FORMAT_JSON:
+        MT_TRY(write_mac_json(c, &w, err));
+        return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+    case MT_FORMAT_CSV:
+        t = pairs_table(c);
+        mt_table_csv(&t, out);
+        mt_table_free(&t);
+        return MT_OK;
+    case MT_FORMAT_HTML:  /* of report alone */
+    case MT_FORMAT_SARIF: /* of check alone */
+    case MT_FORMAT_TEXT:
+        break;
+    }
+    return write_mac_text(c, out, err);
+}
+
+int mt_cmd_mac(const mt_args *args, mt_text *out)
+{
+    comparison c = {.a = {.letter = "A"}, .b = {.letter = "B"}};
+    mt_err err = {.code = MT_OK};
+    int code = MT_EXIT_DONE;
+    mt_status rc = mt_arena_init(&c.mem, 0, &err);
+    if (rc == MT_OK) {
+        code = load_compared_side(args, args->operands[0], &c, &c.a);
+        code =
+            code == MT_EXIT_DONE ? load_compared_side(args, args->operands[1], &c, &c.b) : code;
+    }
+    if (rc == MT_OK && code == MT_EXIT_DONE) {
+        rc = correlate(&c, args->count, &err);
+        rc = rc == MT_OK ? write_out(&c, args->format, out, &err) : rc;
+    }
+    code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
+    mt_analysis_delete(c.a.a);
+    mt_analysis_delete(c.b.a);
+    mt_loaded_model_free(&c.a.s);
+    mt_loaded_model_free(&c.b.s);
+    mt_arena_free(&c.mem);
     return code;
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/save.h"
+#include "cli/cmd_run.h"
 #include "library/scene_designs.h"
 #include "report/explain.h"
 #include "report/table.h"

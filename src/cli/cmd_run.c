@@ -1,16 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune run and compare: answer studies, write what was found, judge published values. */
+/* modetune run, merge and compare: answer studies, write what was found, judge published
+ * values. */
+/* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before
+ * any header. */
+#define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
+
+#include "cli/cmd_run.h"
+
 #include "modetune/version.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
 
 #include "answer/solve.h"
 #include "base/sha256.h"
 #include "cli/args.h"
 #include "cli/cli.h"
-#include "cli/save.h"
-#include "cli/watch.h"
+#include "cli/terminal.h"
 #include "describe/describe.h"
 #include "io/file.h"
 #include "io/folder.h"
@@ -19,9 +29,370 @@
 #include "linalg/dense.h"
 #include "report/page.h"
 #include "report/result_tables.h"
+#include "report/ruler.h"
 #include "report/summary.h"
 #include "result/result.h"
 #include "study/study.h"
+
+/* The files of the index of several studies, the last one decisive. */
+enum { INDEX_FILES = 2 };
+
+/* What a run leaves behind: a folder per study. */
+
+static const char DEFAULT_FOLDER[] = "results";
+static const char *const index_names[INDEX_FILES] = {"index.html", "index.json"};
+
+/* How much of the file name names the folder: all but ".json", unless that would leave no name,
+ * or one that leads out of the folder for results. */
+static size_t name_length(const char *name)
+{
+    const size_t length = strlen(name);
+    const size_t suffix = strlen(".json");
+    if (length <= suffix || strcmp(name + length - suffix, ".json") != 0) {
+        return length;
+    }
+    const size_t left = length - suffix;
+    const bool dots = strspn(name, ".") >= left && left <= 2;
+    return dots ? length : left;
+}
+
+/* The folder for the results of all studies, and the folder for the result of one (heap, NULL
+ * when out of memory). */
+static const char *save_base(const mt_args *args)
+{
+    return args->given[MT_OPT_OUTPUT] ? args->value[MT_OPT_OUTPUT] : DEFAULT_FOLDER;
+}
+
+static char *save_folder(const mt_args *args, const char *study_path)
+{
+    const char *const name = mt_text_base_name(study_path);
+    mt_text t = {.s = NULL};
+    mt_text_add(&t, save_base(args));
+    mt_text_add(&t, "/");
+    mt_text_add_n(&t, name, name_length(name));
+    if (t.failed) {
+        mt_text_free(&t);
+    }
+    return t.s;
+}
+
+/* True for names of folders: they cannot be studies, and their results would have no folder of
+ * their own. */
+static bool is_no_file(const char *path)
+{
+    const char *const name = mt_text_base_name(path);
+    return name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+}
+
+/* Where the result of one study goes. */
+typedef struct put_in_place {
+    const char *study;
+    int order; /* as given */
+    char *folder;
+    struct stat st;
+    bool there;
+} put_in_place;
+
+/* By name, capital letters or not: file systems may not tell them apart, nor may the next one
+ * that the results are copied to. */
+static int by_name(const void *a, const void *b)
+{
+    const put_in_place *const x = a;
+    const put_in_place *const y = b;
+    const int order = strcasecmp(x->folder, y->folder);
+    return order != 0 ? order : x->order - y->order;
+}
+
+/* Order by the existing folder first: links may lead to one folder. */
+static int by_inode(const void *a, const void *b)
+{
+    const put_in_place *const x = a;
+    const put_in_place *const y = b;
+    const int there = (int)y->there - (int)x->there;
+    const int device = (x->st.st_dev > y->st.st_dev) - (x->st.st_dev < y->st.st_dev);
+    const int node = (x->st.st_ino > y->st.st_ino) - (x->st.st_ino < y->st.st_ino);
+    return there != 0 ? there : device != 0 ? device : node != 0 ? node : x->order - y->order;
+}
+
+static bool is_same_folder(const put_in_place *a, const put_in_place *b)
+{
+    return strcasecmp(a->folder, b->folder) == 0 ||
+           (a->there && b->there && a->st.st_dev == b->st.st_dev &&
+            a->st.st_ino == b->st.st_ino);
+}
+
+static int clash(const put_in_place *a, const put_in_place *b)
+{
+    const put_in_place *const first = a->order < b->order ? a : b;
+    const put_in_place *const second = first == a ? b : a;
+    mt_terminal_error("%s and %s would both be written to \"%s\": run one of them separately, "
+                      "with another -o",
+                      first->study, second->study, second->folder);
+    return MT_EXIT_INPUT;
+}
+
+/* Check that a result can be written there, beside an index where there are several. */
+static int check_place(put_in_place *p, bool index)
+{
+    struct stat link;
+    if (is_no_file(p->study)) {
+        mt_terminal_error("\"%s\" is not the name of a file", p->study);
+        return MT_EXIT_INPUT;
+    }
+    for (int i = 0; i < INDEX_FILES && index; i++) {
+        if (strcasecmp(mt_text_base_name(p->folder), index_names[i]) == 0) {
+            mt_terminal_error("%s would be written to \"%s\", which is the place of the index "
+                              "of all studies: run it separately",
+                              p->study, p->folder);
+            return MT_EXIT_INPUT;
+        }
+    }
+    p->there = stat(p->folder, &p->st) == 0;
+    if (!p->there && lstat(p->folder, &link) == 0 && S_ISLNK(link.st_mode)) {
+        mt_terminal_error("%s would be written to \"%s\", a link that leads nowhere", p->study,
+                          p->folder);
+        return MT_EXIT_INPUT;
+    }
+    return MT_EXIT_DONE;
+}
+
+/* Check that no two studies have the same folder: each would silently replace the one
+ * before. */
+static int check_places(put_in_place *places, int n)
+{
+    int code = MT_EXIT_DONE;
+    for (int i = 0; i < n; i++) {
+        code = mt_exit_worse(code, check_place(&places[i], n > 1));
+    }
+    int (*const orders[])(const void *, const void *) = {by_name, by_inode};
+    for (int k = 0; k < MT_COUNT(orders) && code == MT_EXIT_DONE; k++) {
+        qsort(places, (size_t)n, sizeof *places, orders[k]);
+        for (int i = 1; i < n; i++) {
+            if (is_same_folder(&places[i - 1], &places[i])) {
+                code = clash(&places[i - 1], &places[i]);
+            }
+        }
+    }
+    return code;
+}
+
+/* Check, before anything is run, that every study has its own folder. Returns MT_EXIT_DONE, or
+ * the exit status, with all messages given. */
+static int save_plan(const mt_args *args)
+{
+    const int n = args->n_operands;
+    put_in_place *const places = calloc((size_t)n, sizeof *places);
+    bool whole = places != NULL;
+    for (int i = 0; i < n && whole; i++) {
+        places[i].study = args->operands[i];
+        places[i].order = i;
+        places[i].folder = save_folder(args, args->operands[i]);
+        whole = places[i].folder != NULL;
+    }
+    int code = MT_EXIT_SYSTEM;
+    if (whole) {
+        code = check_places(places, n);
+    } else {
+        mt_terminal_error("out of memory");
+    }
+    for (int i = 0; i < n && places != NULL; i++) {
+        free(places[i].folder);
+    }
+    free(places);
+    return code;
+}
+
+/* A result on its way into its folder. */
+typedef struct saving {
+    const char *study_path; /* or file name: names the folder */
+    const char *scene;      /* NULL: none */
+    char *folder;
+    mt_text texts[MT_RESULT_FILE_COUNT];
+    mt_text json; /* of the page */
+    char sha256[MT_SHA256_TEXT];
+    mt_err err;
+} saving;
+
+/* Write timing.json, with the values that may differ between runs of one result. It names the
+ * result; result.json does not name it. */
+static mt_status write_timing(const mt_args *args, const mt_result *result, double seconds,
+                              saving *s)
+{
+    mt_json_writer w = mt_json_writer_default(&s->texts[MT_RESULT_FILE_TIMING]);
+    char *const absolute = realpath(s->study_path, NULL);
+    if (absolute == NULL && errno == ENOMEM) {
+        return mt_fail_memory(&s->err);
+    }
+    mt_json_open(&w, NULL, '{');
+    mt_json_put_string(&w, "format", "modetune-timing/1");
+    mt_json_put_string(&w, "study_path", absolute);
+    mt_json_put_string(&w, "result_sha256", s->sha256);
+    mt_json_put_number(&w, "solve_s", seconds);
+    mt_json_put_integer(&w, "evaluations", result->run.evaluations);
+    mt_json_put_integer(&w, "threads", args->threads);
+    mt_json_close(&w);
+    free(absolute);
+    return mt_json_done(&w) ? MT_OK : mt_fail_memory(&s->err);
+}
+
+/* The page, and the JSON that it holds. */
+static void write_page(const mt_result *result, const char *scene, mt_text *json, mt_text *out)
+{
+    if (mt_result_write_page(result, json, NULL) == MT_OK) {
+        mt_report_html(result, json->s, scene, out);
+    } else {
+        out->failed = true;
+    }
+}
+
+/* The tables; empty where the result has none of the kind. */
+static void write_output(const mt_result *result, mt_result_file which, mt_text *out)
+{
+    mt_table table = {0};
+    switch (which) {
+    case MT_RESULT_FILE_DESIGNS:
+        table = mt_report_designs(result);
+        mt_table_csv(&table, out);
+        mt_table_free(&table);
+        break;
+    case MT_RESULT_FILE_TRADE:
+        if (result->trade != NULL) {
+            table = mt_report_trade(result);
+            mt_table_csv(&table, out);
+            mt_table_free(&table);
+        }
+        break;
+    case MT_RESULT_FILE_CURVES:
+        if (result->n_curves > 0) {
+            table = mt_report_curves(result);
+            mt_table_csv(&table, out);
+            mt_table_free(&table);
+        }
+        break;
+    case MT_RESULT_FILE_REPORT:
+    case MT_RESULT_FILE_TIMING:
+    case MT_RESULT_FILE_RESULT:
+    case MT_RESULT_FILE_COUNT:
+        break;
+    }
+}
+
+void mt_save_print(const mt_args *args, const mt_result *result, const char *scene,
+                   mt_json_writer *w, mt_text *out)
+{
+    mt_text json = {.s = NULL};
+    switch (args->format) {
+    case MT_FORMAT_JSON:
+        mt_result_put(w, NULL, result);
+        break;
+    case MT_FORMAT_CSV:
+        write_output(result, MT_RESULT_FILE_DESIGNS, out);
+        break;
+    case MT_FORMAT_HTML:
+        write_page(result, scene, &json, out);
+        break;
+    case MT_FORMAT_SARIF: /* of check alone */
+    case MT_FORMAT_TEXT:
+        mt_report_summary(result, args->given[MT_OPT_VERIFY], mt_terminal_width(), out);
+        mt_text_add(out, "\n");
+        break;
+    }
+    mt_text_free(&json);
+}
+
+/* The files that result.json names, and itself with its digest. */
+static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
+{
+    const char *names[MT_RESULT_FILE_COUNT] = {NULL};
+    char sha256[MT_RESULT_FILE_COUNT][MT_SHA256_TEXT];
+    int n = 0;
+    for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
+        const mt_result_file which = (mt_result_file)i;
+        if (which != MT_RESULT_FILE_REPORT) {
+            write_output(result, which, &s->texts[i]);
+        } else if (!args->no_report) {
+            write_page(result, s->scene, &s->json, &s->texts[i]);
+        }
+        MT_TRY(s->texts[i].failed ? mt_fail_memory(&s->err) : MT_OK);
+        const mt_text *const made = &s->texts[i];
+        if (made->s != NULL) {
+            mt_page_sha256(made->s, made->length, sha256[n]);
+            names[n++] = mt_result_file_name(which);
+        }
+    }
+    MT_TRY(mt_result_note_outputs(result, n, names, sha256, &s->err));
+    mt_text *const text = &s->texts[MT_RESULT_FILE_RESULT];
+    MT_TRY(mt_result_write_after_page(result, &s->json, text, &s->err));
+    mt_text_free(&s->json);
+    mt_sha256(text->s, text->length, s->sha256);
+    return MT_OK;
+}
+
+static mt_status write_folder_texts(const mt_args *args, mt_result *result, saving *s)
+{
+    s->folder = save_folder(args, s->study_path);
+    return s->folder == NULL ? mt_fail_memory(&s->err) : write_texts(args, result, s);
+}
+
+static int end(const mt_args *args, mt_status rc, const char *told, saving *s)
+{
+    if (rc == MT_OK) {
+        mt_folder_file files[MT_RESULT_FILE_COUNT];
+        for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
+            files[i] = (mt_folder_file){mt_result_file_name((mt_result_file)i), s->texts[i].s,
+                                        s->texts[i].length};
+        }
+        rc = mt_folder_replace(s->folder, files, MT_RESULT_FILE_COUNT, &s->err);
+    }
+    if (rc == MT_OK) {
+        mt_terminal_talk(args->given[MT_OPT_QUIET], "%s; written to %s/", told, s->folder);
+    }
+    for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
+        mt_text_free(&s->texts[i]);
+    }
+    mt_text_free(&s->json);
+    free(s->folder);
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &s->err);
+}
+
+/* Write all files of a result into its folder atomically, and record them in result->run.
+ * Returns the exit status, with all messages given. scene: of its mechanism, as JSON for the
+ * report; NULL: none. sha256: of result.json, "" where it was not written. */
+static int save(const mt_args *args, const char *study_path, mt_result *result,
+                const char *scene, double seconds, char sha256[MT_SHA256_TEXT])
+{
+    saving s = {.study_path = study_path, .scene = scene};
+    mt_text told = {.s = NULL};
+    mt_status rc = write_folder_texts(args, result, &s);
+    rc = rc == MT_OK ? write_timing(args, result, seconds, &s) : rc;
+    mt_text_addf(&told, "%s: %.3g s, ", study_path, seconds);
+    mt_report_work_counters(&result->run, &told);
+    rc = rc == MT_OK && told.failed ? mt_fail_memory(&s.err) : rc;
+    const int code = end(args, rc, told.s, &s);
+    memcpy(sha256, code == MT_EXIT_DONE ? s.sha256 : "",
+           code == MT_EXIT_DONE ? MT_SHA256_TEXT : 1);
+    mt_text_free(&told);
+    return code;
+}
+
+int mt_save_again(const mt_args *args, const char *result_path, mt_result *result,
+                  const char *scene)
+{
+    saving s = {.study_path = result->study.file, .scene = scene};
+    if (is_no_file(s.study_path)) {
+        mt_terminal_error("%s: /study/file: \"%s\" is not the name of a file", result_path,
+                          s.study_path);
+        return MT_EXIT_INPUT;
+    }
+    mt_status rc = write_folder_texts(args, result, &s);
+    if (rc == MT_OK) {
+        rc = mt_result_read_timing(result_path, s.sha256, &s.texts[MT_RESULT_FILE_TIMING],
+                                   &s.err);
+    }
+    return end(args, rc, result_path, &s);
+}
+
+/* The commands. */
 
 /*
  * Several studies run together: the outcome of each, as a table at the end and as index.json
@@ -78,7 +449,7 @@ static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
 static char *journal_of(const mt_args *args, const char *study_path)
 {
     mt_text t = {.s = NULL};
-    char *const folder = mt_save_folder(args, study_path);
+    char *const folder = save_folder(args, study_path);
     if (folder == NULL) {
         return NULL;
     }
@@ -242,7 +613,7 @@ static int batch_begin(const mt_args *args, study_batch *out)
             mt_arena_alloc(&out->mem, (size_t)args->n_operands, sizeof *out->studies);
     }
     for (int i = 0; i < args->n_operands && out->studies != NULL; i++) {
-        char *const folder = mt_save_folder(args, args->operands[i]);
+        char *const folder = save_folder(args, args->operands[i]);
         if (folder == NULL) {
             mt_arena_fail(&out->mem);
             break;
@@ -307,10 +678,10 @@ static int write_index(study_batch *batch)
     mt_report_index_html(batch->studies, args->n_operands, &page);
     mt_status rc = page.failed ? mt_fail_memory(&err) : put_index(batch, &json, &err);
     if (rc == MT_OK) {
-        const mt_folder_file files[] = {{mt_index_names[0], page.s, page.length},
-                                        {mt_index_names[1], json.s, json.length}};
+        const mt_folder_file files[] = {{index_names[0], page.s, page.length},
+                                        {index_names[1], json.s, json.length}};
         mt_terminal_hold_signals();
-        rc = mt_folder_replace(mt_save_base(args), files, MT_COUNT(files), &err);
+        rc = mt_folder_replace(save_base(args), files, MT_COUNT(files), &err);
         mt_terminal_release_signals();
     }
     mt_text_free(&json);
@@ -369,7 +740,7 @@ static int batch_close(study_batch *batch, mt_text *out)
     const int code = write_index(batch);
     if (code == MT_EXIT_DONE) {
         mt_terminal_talk(batch->args->given[MT_OPT_QUIET], "%d studies; index written to %s/",
-                         n, mt_save_base(batch->args));
+                         n, save_base(batch->args));
     }
     return code;
 }
@@ -409,7 +780,7 @@ static mt_status save_designs_so_far(void *context, mt_result *so_far, mt_err *e
     char sha256[MT_SHA256_TEXT] = "";
     (void)err;
     mt_watch_hold();
-    (void)mt_save(j->args, j->path, so_far, NULL, mt_terminal_seconds() - j->start, sha256);
+    (void)save(j->args, j->path, so_far, NULL, mt_terminal_seconds() - j->start, sha256);
     mt_watch_go_on();
     return MT_OK;
 }
@@ -559,7 +930,7 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
         return mt_cli_failed(rc, &j->err);
     }
     mt_save_print(j->args, j->result, scene.s, w, out);
-    const int saved = mt_save(j->args, j->path, j->result, scene.s, j->seconds, j->sha256);
+    const int saved = save(j->args, j->path, j->result, scene.s, j->seconds, j->sha256);
     mt_text_free(&scene);
     j->complete = saved == MT_EXIT_DONE && !is_cut(j->result);
     return mt_exit_worse(outcome(j, verify),
@@ -668,7 +1039,7 @@ int mt_cmd_run(const mt_args *args, mt_text *out)
                     .batch = args->n_operands > 1 && args->part == 0 ? &batch : NULL,
                     .w = mt_json_writer_default(out),
                     .out = out};
-    int code = mt_save_plan(args);
+    int code = save_plan(args);
     if (code == MT_EXIT_DONE && all.batch != NULL) {
         code = batch_begin(args, &batch);
     }

@@ -6,7 +6,7 @@
 
 #include "base/format.h"
 #include "cli/cli.h"
-#include "cli/watch.h"
+#include "cli/terminal.h"
 #include "model/joint.h"
 #include "model/lint.h"
 #include "model/setting.h"
@@ -284,27 +284,6 @@ void mt_loaded_model_warn_overridden(const mt_loaded_model *s, int c)
     }
 }
 
-int mt_modes_index(const mt_modes *modes, int pos)
-{
-    const bool has = modes->kind[pos] == MT_MODE_FLEXIBLE && modes->n_undecided == 0;
-    return has ? mt_modal_index(modes, pos) : 0;
-}
-
-const char *mt_mode_kind_name(mt_mode_kind kind)
-{
-    switch (kind) {
-    case MT_MODE_FLEXIBLE:
-        return "flexible";
-    case MT_MODE_RIGID_BODY:
-        return "rigid_body";
-    case MT_MODE_UNDECIDED:
-        return "undecided";
-    case MT_MODE_UNSTABLE:
-        break;
-    }
-    return "unstable";
-}
-
 const char *mt_mode_name(const mt_loaded_model *s, int c, int index)
 {
     for (int i = 0; i < s->model->n_modes && s->n_inputs == 0; i++) {
@@ -314,17 +293,6 @@ const char *mt_mode_name(const mt_loaded_model *s, int c, int index)
         }
     }
     return NULL;
-}
-
-int mt_modes_shown(const mt_modes *modes, int count)
-{
-    int flexible = 0;
-    for (int i = 0; i < modes->count; i++) {
-        if (modes->kind[i] == MT_MODE_FLEXIBLE && count > 0 && ++flexible > count) {
-            return i;
-        }
-    }
-    return modes->count;
 }
 
 const char *mt_cli_method(mt_lowest_method way)

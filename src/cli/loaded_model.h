@@ -76,14 +76,6 @@ void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *o
                                   const char *joint);
 const char *mt_loaded_model_configuration(const mt_loaded_model *s, int c);
 
-/* Properties of modes that several commands show. */
-/* 1-based index of the vibration mode at position pos; 0 for rigid-body, unstable and undecided
- * modes, and for all modes where one is undecided. */
-int mt_modes_index(const mt_modes *modes, int pos);
-const char *mt_mode_kind_name(mt_mode_kind kind);
-/* The number of positions to show for `count` requested vibration modes (0: all), including
- * rigid-body and unstable ones. */
-int mt_modes_shown(const mt_modes *modes, int count);
 /* The model's name of vibration mode `index` of configuration c; NULL: none. Valid at the
  * original design only. */
 const char *mt_mode_name(const mt_loaded_model *s, int c, int index);

@@ -4,7 +4,9 @@
 
 #include <stdbool.h>
 
+#include "base/run.h"
 #include "base/text.h"
+#include "cli/args.h"
 
 /* Exit status of the program. */
 enum {
@@ -49,13 +51,8 @@ void mt_terminal_diagnostics(const char *lines);
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
 /* Columns of the terminal of standard output; 0: not a terminal, or unknown. */
 int mt_terminal_width(void);
-/* True where standard error is a terminal. */
-bool mt_terminal_is_watched(void);
 /* Write lines to standard error unchanged. */
 void mt_terminal_write(const char *text, size_t length);
-/* Rewrite the progress line of the terminal. Text NULL: erase it. A signal that ends the
- * program erases it, too. */
-void mt_terminal_line(const char *text);
 
 /* Turn SIGPIPE and SIGXFSZ into write errors. SIGINT and SIGTERM keep their action and end the
  * program, except while they are held. */
@@ -86,7 +83,21 @@ int mt_terminal_stop_reason(void *unused);
 void mt_terminal_last_words(const char *text);
 /* Seconds of a monotonic clock. */
 double mt_terminal_seconds(void);
-/* CPU seconds of the process so far, of all its threads. */
-double mt_terminal_cpu_seconds(void);
+
+/*
+ * The progress messages on standard error during long work (--progress). A separate thread
+ * reads the progress, so that a slow terminal does not delay the work, nor a long step the
+ * messages. One work at a time. Nothing else may be written to standard error between begin and
+ * end.
+ */
+
+/* Begin to report the progress for operand i of the command, in its first phase. NULL where no
+ * reports are requested or possible; mt_watch_end follows in any case. */
+mt_progress *mt_watch_begin(const mt_args *args, int i, const char *phase);
+/* Erase the line between hold and go_on, so that other messages can be written. */
+void mt_watch_hold(void);
+void mt_watch_go_on(void);
+/* Erase the line and write the last message. complete: nothing was cut. */
+void mt_watch_end(bool complete);
 
 #endif

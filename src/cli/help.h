@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef CLI_MANUAL_H
-#define CLI_MANUAL_H
+#ifndef CLI_HELP_H
+#define CLI_HELP_H
+
+#include <stdbool.h>
 
 #include "base/text.h"
 
