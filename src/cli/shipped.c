@@ -340,7 +340,7 @@ int mt_cmd_schema(const mt_args *args, mt_text *out)
         return mt_shipped_list(args, &mt_shipped_schemas, out);
     }
     const mt_status rc = mt_shipped_named(&mt_shipped_schemas, args->operands[0], &file, &err);
-    if (rc != MT_OK) {
+    if (rc != MT_OK || file == NULL) {
         return mt_cli_failed(rc, &err);
     }
     mt_text_add_n(out, file->bytes, file->size);

@@ -740,7 +740,7 @@ static mt_status jacobi(int m, int n, double *a, double *s, double *v, mt_arena 
     const lapack_int info =
         LAPACKE_dgejsv_work(LAPACK_COL_MAJOR, 'F', 'N', v == NULL ? 'N' : 'V', 'N', 'N', 'N', m,
                             n, a, m, s, &none, m, v == NULL ? &none : v, n, work, lwork, iwork);
-    if (info < 0) {
+    if (info < 0 || work == NULL) {
         return mt_lapack_bug("dgejsv", info, err);
     }
     /* guards over- and underflow: values are scale * s */

@@ -144,19 +144,18 @@ static mt_status failed(mt_err *err)
 /**
  * Load the library at the first call: with METIS and its other dependencies that takes a fifth
  * of the start-up time of the program, and only large mechanisms need it. It stays loaded.
- * Fails: MT_E_MEMORY; MT_E_INTERNAL where it is not installed.
+ * Returns false, with dlerror, where it is not installed or memory is out.
  */
-static mt_status cholmod_load(mt_cholmod *cholmod, mt_err *err)
+static bool cholmod_load(mt_cholmod *cholmod)
 {
     void *const library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    if (library == NULL || !find_library_symbol(library, "cholmod_start", &cholmod->start) ||
-        !find_library_symbol(library, "cholmod_analyze", &cholmod->analyze) ||
-        !find_library_symbol(library, "cholmod_analyze_p", &cholmod->analyze_p) ||
-        !find_library_symbol(library, "cholmod_free_factor", &cholmod->free_factor) ||
-        !find_library_symbol(library, "cholmod_finish", &cholmod->finish)) {
-        return failed(err);
-    }
-    return MT_OK;
+    return library != NULL && find_library_symbol(library, "cholmod_start", &cholmod->start) &&
+           find_library_symbol(library, "cholmod_analyze", &cholmod->analyze) &&
+           find_library_symbol(library, "cholmod_analyze_p", &cholmod->analyze_p) &&
+           find_library_symbol(library, "cholmod_free_factor", &cholmod->free_factor) &&
+           find_library_symbol(library, "cholmod_finish", &cholmod->finish) &&
+           cholmod->start != NULL && cholmod->analyze != NULL && cholmod->analyze_p != NULL &&
+           cholmod->free_factor != NULL && cholmod->finish != NULL;
 }
 
 /*
@@ -325,7 +324,9 @@ mt_status mt_factor_analyse(const mt_lower *h, const int *part, mt_arena *mem,
     *out = NULL;
     MT_TRY(mt_arena_check(mem, err));
     *p = (mt_factor_pattern){.n = h->n};
-    MT_TRY(cholmod_load(&cholmod, err));
+    if (!cholmod_load(&cholmod)) {
+        return failed(err);
+    }
     if (!cholmod.start(&c)) {
         return mt_fail_memory(err);
     }

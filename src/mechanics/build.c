@@ -463,7 +463,7 @@ static mt_status build_torsion(mt_builder *b, const mt_spring *spring)
             return no_coordinate(b, spring, "angle");
         }
     } else {
-        ends e;
+        ends e = {.body = {0}};
         MT_TRY(spring_ends(b, spring, &e));
         measure = mt_build_angle(b, e.body[0], e.body[1], b->axis_vec[2]);
     }
@@ -484,7 +484,7 @@ static mt_status build_axial(mt_builder *b, const mt_spring *spring)
             return no_coordinate(b, spring, "displacement");
         }
     } else {
-        ends e;
+        ends e = {.body = {0}};
         MT_TRY(spring_ends(b, spring, &e));
         measure = axial_measure(b, &e);
     }
@@ -524,7 +524,7 @@ static void build_rod(mt_builder *b, const int body[2], const int arm[2], mt_nod
 static mt_status build_bar(mt_builder *b, const mt_spring *spring)
 {
     mt_program *const p = &b->sys->program;
-    ends e;
+    ends e = {.body = {0}};
     MT_TRY(spring_ends(b, spring, &e));
     const mt_node length = mt_build_length(b, e.at[0], e.at[1]);
     const mt_node area = mt_build_num_or(b, spring->area, b->zero);
@@ -545,7 +545,7 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
  * displacement (3) and rotation vector (3). */
 static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
 {
-    ends e;
+    ends e = {.body = {0}};
     int measure[6];
     MT_TRY(spring_ends(b, spring, &e));
     for (int k = 0; k < 6; k++) {

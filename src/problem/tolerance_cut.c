@@ -86,11 +86,11 @@ static mt_status verify_tolerance_rows(const mt_workspace *w, const mt_ranges *r
                                        mt_err *err)
 {
     const mt_subproblem *const c = w->c;
-    const mt_row *before = NULL;
+    int before = -1;
     for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
         const mt_row *const row = &c->rows.in.rows[k];
-        const bool again = before != NULL && is_same(before, row);
-        before = row;
+        const bool again = before >= 0 && is_same(&c->rows.in.rows[before], row);
+        before = k;
         const mt_tolerance_range *const range =
             again || !mt_tolerance_row_is_sampled(c, row) ? NULL : range_of(ranges, row);
         if (range == NULL) {
@@ -215,7 +215,7 @@ static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_c
                                   bool *far, mt_err *err)
 {
     const mt_subproblem *const c = w->c;
-    const mt_row *before = NULL;
+    int before = -1;
     double *const x = mt_arena_f64(mem, (size_t)c->p->n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < c->p->n_views; i++) {
@@ -224,9 +224,9 @@ static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_c
     for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
         const mt_row *const row = &c->rows.in.rows[k];
         const int view = row->view;
-        const bool again = before != NULL && is_same(before, row);
+        const bool again = before >= 0 && is_same(&c->rows.in.rows[before], row);
         bool own = false;
-        before = row;
+        before = k;
         if (!again && mt_tolerance_row_is_sampled(c, row) && view >= 0) {
             MT_TRY(verify_first(w, row, x, mem, cuts, &own, err));
             far[view] = far[view] && own;
