@@ -653,6 +653,8 @@ static void keep_home(mt_linear *lin, const double *inputs)
     lin->has_home = !lin->follow && lin->sys->driven && lin->position.direct;
     if (lin->has_home) {
         mt_placement_copy(lin->sys, &lin->position.driven, &lin->home);
+    }
+    if (lin->has_home && lin->sys->n_inputs > 0) {
         memcpy(lin->home_at, inputs, (size_t)lin->sys->n_inputs * sizeof *inputs);
     }
 }
