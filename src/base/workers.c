@@ -371,3 +371,31 @@ mt_status mt_workers_run(int workers, mt_task_path *task_path, const mt_tasks *t
                ? rc
                : mt_fail(err, MT_E_INTERRUPTED, "the rest of the tasks is left to other parts");
 }
+
+mt_status mt_lock_init(mt_lock *lock, mt_err *err)
+{
+    lock->made = pthread_mutex_init(&lock->mutex, NULL) == 0;
+    return lock->made ? MT_OK : mt_fail_memory(err);
+}
+
+void mt_lock_free(mt_lock *lock)
+{
+    if (lock->made) {
+        (void)pthread_mutex_destroy(&lock->mutex);
+        lock->made = false;
+    }
+}
+
+void mt_lock_take(mt_lock *lock)
+{
+    if (lock->made) {
+        (void)pthread_mutex_lock(&lock->mutex);
+    }
+}
+
+void mt_lock_release(mt_lock *lock)
+{
+    if (lock->made) {
+        (void)pthread_mutex_unlock(&lock->mutex);
+    }
+}

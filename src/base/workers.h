@@ -111,4 +111,17 @@ typedef struct mt_tasks {
 mt_status mt_workers_run(int workers, mt_task_path *task_path, const mt_tasks *tasks,
                          mt_err *err);
 
+/* For data that several workers share and change. A lock that could not be made does nothing:
+ * mt_lock_init tells. */
+typedef struct mt_lock {
+    pthread_mutex_t mutex;
+    bool made;
+} mt_lock;
+/* Fails: MT_E_MEMORY. */
+mt_status mt_lock_init(mt_lock *lock, mt_err *err);
+/* Accepts a zeroed lock. */
+void mt_lock_free(mt_lock *lock);
+void mt_lock_take(mt_lock *lock);
+void mt_lock_release(mt_lock *lock);
+
 #endif

@@ -74,7 +74,8 @@ mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *stu
     cache->run = run;
     cache->analysis = mt_arena_alloc(mem, (size_t)study->n_references, sizeof(mt_analysis *));
     cache->study = study;
-    return mt_arena_check(mem, err);
+    MT_TRY(mt_arena_check(mem, err));
+    return mt_lock_init(&cache->lock, err);
 }
 
 void mt_reference_cache_free(mt_reference_cache *cache)
@@ -82,6 +83,7 @@ void mt_reference_cache_free(mt_reference_cache *cache)
     for (int i = 0; cache->analysis != NULL && i < cache->study->n_references; i++) {
         mt_analysis_delete(cache->analysis[i]);
     }
+    mt_lock_free(&cache->lock);
     *cache = (mt_reference_cache){0};
 }
 
@@ -140,8 +142,11 @@ mt_status mt_reference_shape_init(mt_reference_cache *cache, int reference, int 
     if (r->model == NULL) {
         return measured(r, sys, length, mem, out, err);
     }
-    MT_TRY(computed_mode(cache, reference, mode, &a, &pos, err));
-    return computed(a, pos, r, sys, length, mem, out, err);
+    mt_lock_take(&cache->lock);
+    mt_status rc = computed_mode(cache, reference, mode, &a, &pos, err);
+    rc = rc == MT_OK ? computed(a, pos, r, sys, length, mem, out, err) : rc;
+    mt_lock_release(&cache->lock);
+    return rc;
 }
 
 mt_status mt_reference_frequency_init(mt_reference_cache *cache, int reference, int mode,
@@ -152,9 +157,11 @@ mt_status mt_reference_frequency_init(mt_reference_cache *cache, int reference, 
     int pos = -1;
     *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
     if (r->model != NULL) {
-        MT_TRY(computed_mode(cache, reference, mode, &a, &pos, err));
-        out->frequency_hz = mt_modal_hz(&a->modes, pos);
-        return MT_OK;
+        mt_lock_take(&cache->lock);
+        const mt_status rc = computed_mode(cache, reference, mode, &a, &pos, err);
+        out->frequency_hz = rc == MT_OK ? mt_modal_hz(&a->modes, pos) : out->frequency_hz;
+        mt_lock_release(&cache->lock);
+        return rc;
     }
     const mt_measured_mode *const m = measured_mode(r, mode, err);
     if (m == NULL) {

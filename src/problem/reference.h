@@ -3,6 +3,7 @@
 #define PROBLEM_REFERENCE_H
 
 #include "analysis/analysis.h"
+#include "base/workers.h"
 #include "study/study.h"
 
 /* A frequency and a shape to compare with: of a model's configuration, or measured. */
@@ -20,11 +21,12 @@ typedef struct mt_reference_shape {
 } mt_reference_shape;
 
 /* Analyses of references that are models, made on first use and shared by all problems of a
- * study: they do not depend on the design. */
+ * study and by workers, one after the other: they do not depend on the design. */
 typedef struct mt_reference_cache {
     const mt_study *study;
     const mt_run *run;
     mt_analysis **analysis; /* [n_references] owned */
+    mt_lock lock;           /* of the analyses and their memory */
 } mt_reference_cache;
 
 /* Study and run must outlive the cache; its array is in mem: free the cache first. Fails:

@@ -25,7 +25,7 @@ struct nlp_case {
     double eq_tol[M_MOST];
     double in_tol[M_MOST];
     double target[M_MOST]; /* whatever the rows want */
-    long calls;
+    _Atomic long calls;    /* of all workers */
     mt_arena mem;
     mt_nlp_result result;
 };
