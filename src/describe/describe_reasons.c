@@ -36,6 +36,7 @@ static const char *add_listed_sentences(sentences *s, const char *list, const ch
 /* A clearance that equals its margin within this, in percent of the edge, is active: ten times
  * the tolerance that a goal has by default. */
 static const double ACTIVE_PERCENT = 1e-3;
+static const double PERCENT = 100.0;
 
 static const mt_result_mode_placement *gap_of(const mt_recommendation *rec,
                                               const mt_result_clearance *c)
@@ -180,7 +181,6 @@ static void add_bands_sentences(sentences *s)
  * without tolerances. */
 static void add_worst_sentences(sentences *s)
 {
-    static const double PERCENT = 100.0;
     const char *text = ""; /* "k1 2 %, k2 5 %" */
     int n = 0;
     if (s->rec->worst_case == NULL) {
@@ -215,8 +215,6 @@ static void add_worst_sentences(sentences *s)
  * over its limit; limits are relative (a ratio's logarithm), bounds are in t, which is chained
  * to the parameter here. The change enters the search as half its square: dc = df / c.
  */
-
-static const double PERCENT = 100.0;
 
 /* Parts of a requirement [-] that a price is told for: the largest one whose worth a slope
  * tells. */

@@ -507,13 +507,13 @@ static void pull_row(const mt_linear *lin, const mt_inertia_def *def, double c,
     for (int side = 0; side < 2; side++) {
         const double *const block = row + ((ptrdiff_t)6 * side);
         const double *const turn = phi + ((ptrdiff_t)6 * side) + 3;
-        double s[3];
         double v[3];
-        double w[3];
         if (def->kind == MT_INERTIA_ROTATION) {
             mt_cross3(block + 3, turn, v);
             add3(c, v, on + ((ptrdiff_t)6 * side) + 3);
         } else {
+            double s[3];
+            double w[3];
             turned(lin, def->body[side], def->point[side], s);
             mt_cross3(block, turn, v);
             mt_cross3(s, v, w);

@@ -109,7 +109,7 @@ static void curvature_add(curvature_sum *s, const int body[2], const mt_relative
     if (squares) {
         l = mt_relative_filled(s->second, a->span | b->span);
     }
-    for (int ii = 0; squares && ii < l->n; ii++) {
+    for (int ii = 0; squares && b != NULL && ii < l->n; ii++) {
         const int i = l->at[ii];
         const mt_cx x = cx_mul(0.5 * outer, a->g[i]);
         const mt_cx y = cx_mul(0.5 * outer, b->g[i]);

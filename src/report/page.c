@@ -90,9 +90,10 @@ static size_t hash(const char *text, size_t length)
 {
     const uint64_t odd = 0x9e3779b97f4a7c15U; /* 2^64 over the golden ratio */
     uint64_t word[3] = {0};
-    const size_t n = length < sizeof word[0] ? length : sizeof word[0];
+    const bool longer = length > sizeof word[0];
+    const size_t n = longer ? sizeof word[0] : length;
     memcpy(&word[0], text, n);
-    if (length > n) {
+    if (longer) {
         memcpy(&word[1], text + (length - n) / 2, sizeof word[1]);
         memcpy(&word[2], text + length - n, sizeof word[2]);
     }

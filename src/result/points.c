@@ -61,7 +61,10 @@ mt_status mt_result_points_find(const char *text, size_t length, int least,
     memcpy(rest, text, before);
     memcpy(rest + before, end, after);
     rest[before + after] = '\0';
-    *out = (mt_result_points){n, first, rest, before + after};
+    out->n = n;
+    out->at = first;
+    out->rest = rest;
+    out->rest_length = before + after;
     return MT_OK;
 }
 

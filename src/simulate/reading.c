@@ -114,7 +114,7 @@ static mt_status fit(const mt_samples *s, double hz, bool *done, mt_arena *mem, 
                      mt_err *err)
 {
     /* rank of the columns */
-    static const double DEPENDENT = 1e-9;
+    static const double RANK = 1e-9;
     const int columns = (2 * MT_HARMONICS) + 1;
     double *const a = mt_arena_f64(mem, (size_t)s->n, (size_t)columns);
     double *const b = mt_arena_f64(mem, (size_t)s->n, 1);
@@ -125,7 +125,7 @@ static mt_status fit(const mt_samples *s, double hz, bool *done, mt_arena *mem, 
     for (ptrdiff_t i = 0; i < s->n; i++) {
         b[i] = s->x[i * s->stride];
     }
-    MT_TRY(mt_qr_factor(s->n, columns, a, s->n, DEPENDENT, mem, &qr, err));
+    MT_TRY(mt_qr_factor(s->n, columns, a, s->n, RANK, mem, &qr, err));
     *done = qr.rank == columns;
     if (*done) {
         MT_TRY(mt_qr_solve(&qr, 1, b, by, mem, err));
