@@ -323,13 +323,14 @@ static void say_requirements(sentences *s)
 static void write_edges(sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
+    const bool known = s->design->below != NULL && found->mult_in != NULL;
+    mt_avoidance_rows rows = {.c = &s->p->whole, .below = s->design->below};
+    int at = s->p->whole.rows.of_kind[MT_ROW_BAND].first;
     mt_row row;
     sentence_of(s, "cost", NULL);
-    for (int i = 0; s->design->below != NULL && found->mult_in != NULL &&
-                    mt_avoidance_row_at(&s->p->whole, s->design->below, i, &row);
-         i++) {
+    while (known && mt_avoidance_next_row(&rows, &row)) {
         const mt_avoidance *const c = &s->p->avoidances[row.avoidance];
-        const double mult = found->mult_in[s->p->whole.rows.of_kind[MT_ROW_BAND].first + i];
+        const double mult = found->mult_in[at++];
         const char *part = NULL;
         const char *const saved = mult > 0.0 ? relaxation_gain_text(s, mult, &part) : NULL;
         if (saved != NULL) {

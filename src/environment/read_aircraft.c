@@ -17,23 +17,18 @@
      .possible = MT_POSSIBLE_##row,          \
      .says = __VA_ARGS__},
 
-#define ROOT_KEYS(X)                                                                         \
-    X(ROOT_SCHEMA, "$schema", MT_KEY_TEXT, false, NONE, "This schema, for the editor.")      \
-    X(ROOT_FORMAT, "format", MT_KEY_TEXT, true, NONE, "Kind and version of this file.",      \
-      .schema = "\"type\": \"string\", \"enum\": [\"modetune-aircraft/1\"]")                 \
-    X(ROOT_DESCRIPTION, "description", MT_KEY_TEXT, false, NONE, "Free text for people.")    \
-    X(ROOT_SOURCE, "source", MT_KEY_TEXT, false, NONE, "Where it comes from.")               \
-    X(ROOT_ACCEPTED, "accepted", MT_KEY_LIST, false, NONE,                                   \
-      "Names of warnings that you know and accept: they are not printed.",                   \
-      .examples = "[[\"level\"]]",                                                           \
-      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\", \"enum\": "          \
-                "[\"angle\", \"band\", \"bounds\", \"bushing\", \"damping\", \"density\", "  \
-                "\"drive\", \"dropped\", \"frequency\", \"gap\", \"gravity\", \"inertia\", " \
-                "\"level\", \"margin\", \"mass\", \"modulus\", \"no_effect\", \"off\", "     \
-                "\"reference\", \"section\", \"size\", \"speed\", \"speed_range\", "         \
-                "\"spread\", \"spring\", \"target\", \"tolerance\", \"unit\", \"weight\"]}") \
-    X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true, NONE, "The aircraft.",                   \
-      .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "               \
+#define ROOT_KEYS(X)                                                                      \
+    X(ROOT_SCHEMA, "$schema", MT_KEY_TEXT, false, NONE, "This schema, for the editor.")   \
+    X(ROOT_FORMAT, "format", MT_KEY_TEXT, true, NONE, "Kind and version of this file.",   \
+      .schema = "\"type\": \"string\", \"enum\": [\"modetune-aircraft/1\"]")              \
+    X(ROOT_DESCRIPTION, "description", MT_KEY_TEXT, false, NONE, "Free text for people.") \
+    X(ROOT_SOURCE, "source", MT_KEY_TEXT, false, NONE, "Where it comes from.")            \
+    X(ROOT_ACCEPTED, "accepted", MT_KEY_LIST, false, NONE,                                \
+      "Names of warnings that you know and accept: they are not printed.",                \
+      .examples = "[[\"level\"]]", .choices = mt_warning_names,                           \
+      .n_choices = MT_WARNING_NAME_COUNT)                                                 \
+    X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true, NONE, "The aircraft.",                \
+      .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "            \
                 "\"#/definitions/aircraft\"}")
 enum { ROOT_KEYS(KEY_ENUM) ROOT_KEY_COUNT };
 static const mt_key ROOT[] = {ROOT_KEYS(KEY)};

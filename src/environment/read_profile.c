@@ -19,13 +19,8 @@
       "Where it comes from: a standard, a test report.")                                     \
     X(ROOT_ACCEPTED, "accepted", LIST, false, NONE,                                          \
       "Names of warnings that you know and accept: they are not printed.",                   \
-      .examples = "[[\"level\"]]",                                                           \
-      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\", \"enum\": "          \
-                "[\"angle\", \"band\", \"bounds\", \"bushing\", \"damping\", \"density\", "  \
-                "\"drive\", \"dropped\", \"frequency\", \"gap\", \"gravity\", \"inertia\", " \
-                "\"level\", \"margin\", \"mass\", \"modulus\", \"no_effect\", \"off\", "     \
-                "\"reference\", \"section\", \"size\", \"speed\", \"speed_range\", "         \
-                "\"spread\", \"spring\", \"target\", \"tolerance\", \"unit\", \"weight\"]}") \
+      .examples = "[[\"level\"]]", .choices = mt_warning_names,                              \
+      .n_choices = MT_WARNING_NAME_COUNT)                                                    \
     X(ROOT_AIRCRAFT, "aircraft", TEXT, false, NONE,                                          \
       "Catalogue of aircraft, relative to this file. Absent: aircraft.json beside it, else " \
       "the one that is part of the program.",                                                \

@@ -3,6 +3,10 @@
 
 #include "base/format.h"
 
+const char *const mt_length_names[MT_LENGTH_NAMES] = {"m", "mm", "cm", "in", "ft"};
+const char *const mt_angle_names[MT_ANGLE_NAMES] = {"rad", "deg"};
+const char *const mt_speed_names[MT_SPEED_NAMES] = {"Hz", "rpm"};
+
 /* The unit of a dimension that the text names; NULL where absent or wrong (noted). */
 static const mt_unit *read_unit(mt_reader *r, mt_addr value, mt_dimension dimension)
 {

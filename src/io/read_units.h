@@ -9,6 +9,11 @@
  * place; an expression (a string) is in SI, so an expression there that looks like a bare
  * number, or has one among its terms, is refused with the correct form.
  */
+/* The units that "units" of a model or a study may name. */
+enum { MT_LENGTH_NAMES = 5, MT_ANGLE_NAMES = 2, MT_SPEED_NAMES = 2 };
+extern const char *const mt_length_names[MT_LENGTH_NAMES];
+extern const char *const mt_angle_names[MT_ANGLE_NAMES];
+extern const char *const mt_speed_names[MT_SPEED_NAMES];
 /* Read "units" of a model or a study by its table, in the order of mt_dimension: the unit of
  * each dimension, NULL where none is given. */
 void mt_read_units(mt_reader *r, mt_addr value, const mt_key_table *table,

@@ -28,13 +28,8 @@
       "Where it comes from: a table, a page, a test report.")                                 \
     X(MODEL_ACCEPTED, "accepted", LIST, false, NONE,                                          \
       "Names of warnings that you know and accept: they become notes.",                       \
-      .examples = "[[\"density\"]]",                                                          \
-      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\", \"enum\": "           \
-                "[\"angle\", \"band\", \"bounds\", \"bushing\", \"damping\", \"density\", "   \
-                "\"drive\", \"dropped\", \"frequency\", \"gap\", \"gravity\", \"inertia\", "  \
-                "\"level\", \"margin\", \"mass\", \"modulus\", \"no_effect\", \"off\", "      \
-                "\"reference\", \"section\", \"size\", \"speed\", \"speed_range\", "          \
-                "\"spread\", \"spring\", \"target\", \"tolerance\", \"unit\", \"weight\"]}")  \
+      .examples = "[[\"density\"]]", .choices = mt_warning_names,                             \
+      .n_choices = MT_WARNING_NAME_COUNT)                                                     \
     X(MODEL_UNITS, "units", OBJECT, false, NONE, NULL,                                        \
       .schema = "\"$ref\": \"#/definitions/units\"")                                          \
     X(MODEL_DIMENSION, "dimension", COUNT, true, WHOLE,                                       \
@@ -169,27 +164,24 @@ enum { BODY_KEYS(MT_READ_ENUM) BODY_COUNT };
 MT_READ_TABLE(mt_body_keys, "body", BODY_KEYS,
               .says = "A rigid body, or without inertia_kg_m2 a point mass.");
 
-static const char *const LENGTHS[] = {"m", "mm", "cm", "in", "ft"};
-static const char *const ANGLES[] = {"rad", "deg"};
-static const char *const SPEEDS[] = {"Hz", "rpm"};
 /* In the order of mt_dimension. */
 static const mt_key UNITS[] = {
     {.name = "length",
      .type = MT_KEY_TEXT,
-     .choices = LENGTHS,
-     .n_choices = MT_COUNT(LENGTHS),
+     .choices = mt_length_names,
+     .n_choices = MT_COUNT(mt_length_names),
      .says = "Unit of coordinates: points, at, centre, from, to. Absent: m."},
     {.name = "angle",
      .type = MT_KEY_TEXT,
-     .choices = ANGLES,
-     .n_choices = MT_COUNT(ANGLES),
+     .choices = mt_angle_names,
+     .n_choices = MT_COUNT(mt_angle_names),
      .says =
          "Unit of angles. Every angle of a model names its unit; with this member, expressions "
          "of parameters that are angles are checked for bare numbers. Absent: rad."},
     {.name = "speed",
      .type = MT_KEY_TEXT,
-     .choices = SPEEDS,
-     .n_choices = MT_COUNT(SPEEDS),
+     .choices = mt_speed_names,
+     .n_choices = MT_COUNT(mt_speed_names),
      .says = "Unit of speeds. Absent: Hz."},
 };
 static const mt_key_table units_keys = {

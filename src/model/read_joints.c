@@ -6,6 +6,15 @@
 static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
 static const char *const SPRING_NAMES[] = {MT_SPRING_LIST(NAME_OF)};
 
+/* What is said of the bodies of a spring and of a damper. */
+#define TWO_BODIES                                                                             \
+    "The two bodies or parts that it connects, each \"ground\", a body, or a part of a link: " \
+    "\"L.start\", \"L.end\", the rigid element \"L.3\", or the node \"L.node3\" (of beam "     \
+    "elements, or where rigid elements meet; \"L.node0\" is the start).",                      \
+        .examples = "[[\"ground\", \"beam.start\"]]",                                          \
+        .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "         \
+                  "{\"type\": \"string\"}"
+
 #define JOINT_KEYS(X)                                                                          \
     X(JOINT_NAME, "name", TEXT, true, NONE,                                                    \
       "Name of the joint: a letter or _, then letters, digits, _, + and -.",                   \
@@ -69,13 +78,7 @@ MT_READ_TABLE(mt_joint_keys, "joint", JOINT_KEYS, .says = "A joint between two b
       "along axes of the drawing that the first body carries; its forces act at the point of " \
       "the second body.",                                                                      \
       .choices = SPRING_NAMES, .n_choices = MT_COUNT(SPRING_NAMES))                            \
-    X(SPRING_BODIES, "bodies", LIST, false, NONE,                                              \
-      "The two bodies or parts that it connects, each \"ground\", a body, or a part of a "     \
-      "link: \"L.start\", \"L.end\", the rigid element \"L.3\", or the node \"L.node3\" (of "  \
-      "beam elements, or where rigid elements meet; \"L.node0\" is the start).",               \
-      .examples = "[[\"ground\", \"beam.start\"]]",                                            \
-      .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "           \
-                "{\"type\": \"string\"}")                                                      \
+    X(SPRING_BODIES, "bodies", LIST, false, NONE, TWO_BODIES)                                  \
     X(SPRING_JOINT, "joint", TEXT, false, NONE,                                                \
       "Torsion: the joint (or hinge of a link, \"L.h3\") whose angle it acts on. Axial: the "  \
       "joint that slides along whose axis it acts.")                                           \
@@ -132,40 +135,34 @@ enum { SPRING_KEYS(MT_READ_ENUM) SPRING_COUNT };
 MT_READ_TABLE(mt_spring_keys, "spring", SPRING_KEYS, .says = "A spring.");
 
 /* The first ten of a spring's keys, in their order, so that one reader serves both. */
-#define DAMPER_KEYS(X)                                                                        \
-    X(DAMPER_NAME, "name", TEXT, true, NONE,                                                  \
-      "Name of the damper: a letter or _, then letters, digits, _, + and -.",                 \
-      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                \
-    X(DAMPER_TYPE, "type", TEXT, true, NONE, "As for springs.",                               \
-      .schema = "\"type\": \"string\", \"enum\": [\"torsion\", \"axial\", \"bushing\"]")      \
-    X(DAMPER_BODIES, "bodies", LIST, false, NONE,                                             \
-      "The two bodies or parts that it connects, each \"ground\", a body, or a part of a "    \
-      "link: \"L.start\", \"L.end\", the rigid element \"L.3\", or the node \"L.node3\" (of " \
-      "beam elements, or where rigid elements meet; \"L.node0\" is the start).",              \
-      .examples = "[[\"ground\", \"beam.start\"]]",                                           \
-      .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "          \
-                "{\"type\": \"string\"}")                                                     \
-    X(DAMPER_JOINT, "joint", TEXT, false, NONE,                                               \
-      "Torsion: the joint (or hinge of a link, \"L.h3\") whose rate it acts on. Axial: the "  \
-      "joint that slides along whose axis it acts.")                                          \
-    X(DAMPER_AT, "at", TEXT_OR_LIST, false, POINT, NULL,                                      \
-      .schema = "\"$ref\": \"#/definitions/at\"")                                             \
-    X(DAMPER_FORCE, "damping_n_s_per_m", NUMBER_OR_LIST, false, ANY,                          \
-      "Axial: coefficient [N s/m]. Bushing: a list along x, y (and z).",                      \
-      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "    \
-                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                    \
-                "\"#/definitions/number\"}}]")                                                \
-    X(DAMPER_TORQUE, "damping_n_m_s_per_rad", NUMBER_OR_LIST, false, ANY,                     \
-      "Torsion: coefficient [N m s/rad]. Bushing: about z, or a list about x, y, z.",         \
-      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "    \
-                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                    \
-                "\"#/definitions/number\"}}]")                                                \
-    X(DAMPER_IN, "in", LIST, false, NONE,                                                     \
-      "Names of the configurations that contain this item; absent: all of them. "             \
-      "Configurations that are `like` one of them contain it as well.",                       \
-      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                     \
-    X(DAMPER_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")          \
-    X(DAMPER_SOURCE, "source", TEXT, false, NONE,                                             \
+#define DAMPER_KEYS(X)                                                                       \
+    X(DAMPER_NAME, "name", TEXT, true, NONE,                                                 \
+      "Name of the damper: a letter or _, then letters, digits, _, + and -.",                \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                               \
+    X(DAMPER_TYPE, "type", TEXT, true, NONE, "As for springs.",                              \
+      .schema = "\"type\": \"string\", \"enum\": [\"torsion\", \"axial\", \"bushing\"]")     \
+    X(DAMPER_BODIES, "bodies", LIST, false, NONE, TWO_BODIES)                                \
+    X(DAMPER_JOINT, "joint", TEXT, false, NONE,                                              \
+      "Torsion: the joint (or hinge of a link, \"L.h3\") whose rate it acts on. Axial: the " \
+      "joint that slides along whose axis it acts.")                                         \
+    X(DAMPER_AT, "at", TEXT_OR_LIST, false, POINT, NULL,                                     \
+      .schema = "\"$ref\": \"#/definitions/at\"")                                            \
+    X(DAMPER_FORCE, "damping_n_s_per_m", NUMBER_OR_LIST, false, ANY,                         \
+      "Axial: coefficient [N s/m]. Bushing: a list along x, y (and z).",                     \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "   \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                   \
+                "\"#/definitions/number\"}}]")                                               \
+    X(DAMPER_TORQUE, "damping_n_m_s_per_rad", NUMBER_OR_LIST, false, ANY,                    \
+      "Torsion: coefficient [N m s/rad]. Bushing: about z, or a list about x, y, z.",        \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "   \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                   \
+                "\"#/definitions/number\"}}]")                                               \
+    X(DAMPER_IN, "in", LIST, false, NONE,                                                    \
+      "Names of the configurations that contain this item; absent: all of them. "            \
+      "Configurations that are `like` one of them contain it as well.",                      \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                    \
+    X(DAMPER_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")         \
+    X(DAMPER_SOURCE, "source", TEXT, false, NONE,                                            \
       "Where it comes from: a table, a page, a test report.")
 enum { DAMPER_KEYS(MT_READ_ENUM) DAMPER_COUNT };
 _Static_assert((int)DAMPER_COUNT == (int)SPRING_SOURCE + 1,

@@ -217,7 +217,8 @@ static mt_status lay_out_bands(const mt_row_layout *l, mt_err *err)
     mt_subproblem *const c = l->c;
     mt_row row;
     MT_TRY(place_modes(l, err));
-    for (int k = 0; c->below != NULL && mt_avoidance_row_at(c, c->below, k, &row); k++) {
+    mt_avoidance_rows rows = {.c = c, .below = c->below};
+    while (c->below != NULL && mt_avoidance_next_row(&rows, &row)) {
         MT_TRY(mt_rows_append(&c->rows.in, &row, l->mem, err));
     }
     return MT_OK;
@@ -288,21 +289,19 @@ static mt_row row_of_band(const mt_subproblem *c, int i, int b, int k, int under
     return row;
 }
 
-bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row, mt_row *out)
+bool mt_avoidance_next_row(mt_avoidance_rows *rows, mt_row *out)
 {
-    int left = row;
-    for (int i = 0; i < c->n_avoidances; i++) {
-        const mt_avoidance *const avoidance = &c->avoidances[i];
+    const mt_subproblem *const c = rows->c;
+    for (; rows->avoidance < c->n_avoidances; rows->avoidance++, rows->band = 0) {
+        const mt_avoidance *const avoidance = &c->avoidances[rows->avoidance];
         const int flexible = mt_configuration_vibrations(&c->views[avoidance->view]);
-        for (int b = 0; b < avoidance->bands.n; b++) {
-            const int k = below[avoidance->first + b];
+        for (; rows->band < avoidance->bands.n; rows->band++, rows->row = 0) {
+            const int k = rows->below[avoidance->first + rows->band];
             const int under = rows_below(avoidance, k);
-            const int rows = under + rows_above(avoidance, k, flexible);
-            if (left < rows) {
-                *out = row_of_band(c, i, b, k, under, left);
+            if (rows->row < under + rows_above(avoidance, k, flexible)) {
+                *out = row_of_band(c, rows->avoidance, rows->band, k, under, rows->row++);
                 return true;
             }
-            left -= rows;
         }
     }
     return false;

@@ -11,9 +11,19 @@
 mt_status mt_avoidances_compile(mt_problem *p, mt_err *err);
 /* mt_bands_find (frequency.h) of its bands; NaN where the configuration is unstable. */
 double mt_avoidance_find_modes(const mt_avoidance *c, const mt_modes *modes, int *below);
-/* Row `row` of the bands (0: their first) of a search with the mode placement
- * below[n_bands]; false: no such row. */
-bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row, mt_row *out);
+/* The rows of the bands, in their order, of a search with the mode placement below[n_bands]:
+ *     mt_avoidance_rows rows = {.c = c, .below = below};
+ *     while (mt_avoidance_next_row(&rows, &row)) { ... }
+ */
+typedef struct mt_avoidance_rows {
+    const mt_subproblem *c;
+    const int *below;
+    int avoidance; /* the next row's */
+    int band;
+    int row; /* of this band */
+} mt_avoidance_rows;
+/* The next row; false after the last. */
+bool mt_avoidance_next_row(mt_avoidance_rows *rows, mt_row *out);
 /* Adds to the shapes requested of a configuration (empty: those of its rows alone) those of the
  * modes that rows of its bands use, and of all modes up to the highest band, whose frequencies
  * are wanted to the last digit. */

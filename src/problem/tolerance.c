@@ -521,7 +521,7 @@ const mt_tolerance_corners *mt_tolerance_corners_of(const mt_subproblem *c, int 
 
 int mt_tolerance_next_row(const mt_subproblem *c, int from)
 {
-    for (int i = from; i < c->rows.in.n; i++) {
+    for (int i = from; c->tolerance_box != NULL && i < c->rows.in.n; i++) {
         if (c->rows.in.rows[i].corner >= 0) {
             return i;
         }

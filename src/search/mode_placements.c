@@ -35,7 +35,8 @@ static mt_status mode_placement_copy(const mt_subproblem *c, const int *below,
     const size_t n_eq = (size_t)c->rows.eq.n;
     size_t n_in = (size_t)c->rows.in.n;
     mt_row row;
-    for (int i = 0; mt_avoidance_row_at(c, below, i, &row); i++) {
+    mt_avoidance_rows rows = {.c = c, .below = below};
+    while (mt_avoidance_next_row(&rows, &row)) {
         n_in++;
     }
     const size_t n = (size_t)p->n + 1;

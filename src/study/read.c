@@ -65,25 +65,22 @@ const mt_key_table mt_study_weight_sensitivity_keys = {
             "minimised again. It is a sensitivity to the weights, not an uncertainty: repeated "
             "noisy tests may scatter many times more."};
 
-static const char *const LENGTHS[] = {"m", "mm", "cm", "in", "ft"};
-static const char *const ANGLES[] = {"rad", "deg"};
-static const char *const SPEEDS[] = {"Hz", "rpm"};
 /* In the order of mt_dimension. */
 static const mt_key UNITS[] = {
     {.name = "length",
      .type = MT_KEY_TEXT,
-     .choices = LENGTHS,
-     .n_choices = MT_COUNT(LENGTHS),
+     .choices = mt_length_names,
+     .n_choices = MT_COUNT(mt_length_names),
      .says = "Unit of parameters that are lengths. Absent: each in its own."},
     {.name = "angle",
      .type = MT_KEY_TEXT,
-     .choices = ANGLES,
-     .n_choices = MT_COUNT(ANGLES),
+     .choices = mt_angle_names,
+     .n_choices = MT_COUNT(mt_angle_names),
      .says = "Unit of parameters that are angles. Absent: each in its own."},
     {.name = "speed",
      .type = MT_KEY_TEXT,
-     .choices = SPEEDS,
-     .n_choices = MT_COUNT(SPEEDS),
+     .choices = mt_speed_names,
+     .n_choices = MT_COUNT(mt_speed_names),
      .says = "Unit of parameters in Hz, such as speeds of rotors. Absent: each in its own."},
 };
 const mt_key_table mt_study_units_keys = {
