@@ -119,15 +119,29 @@ static mt_interval product_of(double a, double b)
                          !positive && p == 0.0 ? 0.0 : up(p)};
 }
 
-static mt_interval hull_of_four(mt_interval p, mt_interval q, mt_interval r, mt_interval s)
+/* a * b, a >= 0: by signs two products are the bounds. */
+static mt_interval times_positive(mt_interval a, mt_interval b)
 {
-    return mt_interval_hull(mt_interval_hull(p, q), mt_interval_hull(r, s));
+    return mt_interval_of(product_of(b.lo >= 0.0 ? a.lo : a.hi, b.lo).lo,
+                          product_of(b.hi >= 0.0 ? a.hi : a.lo, b.hi).hi);
 }
 
 mt_interval mt_interval_mul(mt_interval a, mt_interval b)
 {
-    return hull_of_four(product_of(a.lo, b.lo), product_of(a.lo, b.hi), product_of(a.hi, b.lo),
-                        product_of(a.hi, b.hi));
+    if (a.lo >= 0.0) {
+        return times_positive(a, b);
+    }
+    if (b.lo >= 0.0) {
+        return times_positive(b, a);
+    }
+    if (a.hi <= 0.0) {
+        return negative(times_positive(negative(a), b));
+    }
+    if (b.hi <= 0.0) {
+        return negative(times_positive(negative(b), a));
+    }
+    return mt_interval_hull(mt_interval_hull(product_of(a.lo, b.lo), product_of(a.hi, b.hi)),
+                            mt_interval_hull(product_of(a.lo, b.hi), product_of(a.hi, b.lo)));
 }
 
 /* Bounds of the exact quotient of two bounds, b /= 0. */
@@ -150,13 +164,19 @@ static mt_interval quotient_of(double a, double b)
                          !positive && q == 0.0 ? 0.0 : up(q)};
 }
 
+/* a / b, b > 0: by signs two quotients are the bounds. */
+static mt_interval over_positive(mt_interval a, mt_interval b)
+{
+    return mt_interval_of(quotient_of(a.lo, a.lo >= 0.0 ? b.hi : b.lo).lo,
+                          quotient_of(a.hi, a.hi >= 0.0 ? b.lo : b.hi).hi);
+}
+
 mt_interval mt_interval_div(mt_interval a, mt_interval b)
 {
     if (mt_interval_has(b, 0.0)) {
         return mt_interval_all();
     }
-    return hull_of_four(quotient_of(a.lo, b.lo), quotient_of(a.lo, b.hi),
-                        quotient_of(a.hi, b.lo), quotient_of(a.hi, b.hi));
+    return b.lo > 0.0 ? over_positive(a, b) : over_positive(negative(a), negative(b));
 }
 
 /* The lesser and the greater of |x| over the interval. */

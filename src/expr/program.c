@@ -458,6 +458,11 @@ static choice chosen(mt_op op, mt_interval a, mt_interval b)
     return CHOICE_EITHER;
 }
 
+static bool is_zero(mt_interval a)
+{
+    return a.lo == 0.0 && a.hi == 0.0;
+}
+
 /* Derivatives of one node with two operands (or one, doubled with a zero partial). */
 static void node_derivatives(const mt_program *p, int i, const double *lo, const double *hi,
                              double *dlo, double *dhi)
@@ -479,6 +484,9 @@ static void node_derivatives(const mt_program *p, int i, const double *lo, const
         const mt_interval da = {dlo[ka], dhi[ka]};
         const mt_interval db = {dlo[kb], dhi[kb]};
         mt_interval sum = {0.0, 0.0};
+        if (is_zero(da) && is_zero(db)) {
+            continue; /* as the rows stand */
+        }
         if (chooses) {
             sum = c == CHOICE_EITHER ? mt_interval_hull(da, db) : c == CHOICE_FIRST ? da : db;
         } else {

@@ -575,6 +575,7 @@ static mt_status enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *
         e->dnode[s] = mt_arena_f64(&e->mem, (size_t)e->program.count, inputs);
         e->corner_x[s] = mt_arena_f64(&e->mem, inputs, 1);
     }
+    e->corner = mt_arena_alloc(&e->mem, inputs, 1);
     for (int i = 0; i < e->n_coefficients; i++) {
         e->coefficients[i].sign = mt_arena_alloc(&e->mem, inputs, sizeof(signed char));
     }
@@ -585,20 +586,49 @@ static mt_status enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *
     return check_positive(e, ok, reason, err);
 }
 
-/* The inputs at which a coefficient is least (side MT_LOW) or greatest: the end that its
- * derivative's sign says, the whole interval where it has none. */
-static void corner_of(mt_enclosure *e, const mt_enclosure_coefficient *c, mt_side side,
-                      const double *lo, const double *hi)
+/* Where an input stands at an extreme of a coefficient: anywhere where the coefficient does not
+ * depend on it, at the end that the sign of its derivative says, over its whole interval where
+ * it has none. */
+typedef enum corner_place { CORNER_ANY, CORNER_LOW, CORNER_HIGH, CORNER_WHOLE } corner_place;
+
+static corner_place place_in_corner(const mt_enclosure *e, const mt_enclosure_coefficient *c,
+                                    mt_side side, int k)
 {
-    const size_t row = (size_t)c->node * (size_t)e->n_inputs;
-    for (int k = 0; k < e->n_inputs; k++) {
-        const bool rises = e->dnode[MT_LOW][row + (size_t)k] >= 0.0;
-        const bool falls = e->dnode[MT_HIGH][row + (size_t)k] <= 0.0;
-        const bool at_low = side == MT_LOW ? rises : falls;
-        const bool at_high = side == MT_LOW ? falls : rises;
-        e->corner_x[MT_LOW][k] = at_high && !at_low ? hi[k] : lo[k];
-        e->corner_x[MT_HIGH][k] = at_low ? lo[k] : hi[k];
+    const size_t at = ((size_t)c->node * (size_t)e->n_inputs) + (size_t)k;
+    const bool rises = e->dnode[MT_LOW][at] >= 0.0;
+    const bool falls = e->dnode[MT_HIGH][at] <= 0.0;
+    if (rises == falls) {
+        return rises ? CORNER_ANY : CORNER_WHOLE;
     }
+    return rises == (side == MT_LOW) ? CORNER_LOW : CORNER_HIGH;
+}
+
+/* Adds the corner of the coefficient to corner[n_inputs] where both agree. */
+static bool share_corner(const mt_enclosure *e, const mt_enclosure_coefficient *c, mt_side side,
+                         unsigned char *corner)
+{
+    for (int k = 0; k < e->n_inputs; k++) {
+        const corner_place own = place_in_corner(e, c, side, k);
+        if (own != CORNER_ANY && corner[k] != CORNER_ANY && corner[k] != own) {
+            return false;
+        }
+    }
+    for (int k = 0; k < e->n_inputs; k++) {
+        const corner_place own = place_in_corner(e, c, side, k);
+        corner[k] = own != CORNER_ANY ? (unsigned char)own : corner[k];
+    }
+    return true;
+}
+
+/* Enclosures of the program's nodes in the corner. */
+static void enclose_corner(mt_enclosure *e, const double *lo, const double *hi)
+{
+    for (int k = 0; k < e->n_inputs; k++) {
+        e->corner_x[MT_LOW][k] = e->corner[k] == CORNER_HIGH ? hi[k] : lo[k];
+        e->corner_x[MT_HIGH][k] = e->corner[k] >= CORNER_HIGH ? hi[k] : lo[k];
+    }
+    mt_program_interval(&e->program, e->corner_x[MT_LOW], e->corner_x[MT_HIGH], e->node[MT_LOW],
+                        e->node[MT_HIGH]);
 }
 
 /* True where the box lies within the bounds. */
@@ -641,35 +671,58 @@ static void mean_values(mt_enclosure *e, const double *lo, const double *hi)
     }
 }
 
-/* Bounds of dependent coefficients: the best of the plain enclosure, the mean value's and that
- * of the corners. */
-static void sharpen(mt_enclosure *e, const double *lo, const double *hi)
+/* Bounds by corners on one side: coefficients whose corners agree share one. */
+static void sharpen_by_corners(mt_enclosure *e, mt_side side, const double *lo,
+                               const double *hi)
 {
-    mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],
-                                 e->dnode[MT_LOW], e->dnode[MT_HIGH]);
-    mean_values(e, lo, hi);
     for (int i = 0; i < e->n_coefficients; i++) {
-        const mt_enclosure_coefficient *const c = &e->coefficients[i];
-        for (mt_side side = MT_LOW; c->dependent && side <= MT_HIGH; side++) {
-            corner_of(e, c, side, lo, hi);
-            mt_program_interval(&e->program, e->corner_x[MT_LOW], e->corner_x[MT_HIGH],
-                                e->node[MT_LOW], e->node[MT_HIGH]);
+        e->coefficients[i].open = e->coefficients[i].dependent;
+    }
+    for (int first = 0; first < e->n_coefficients; first++) {
+        if (!e->coefficients[first].open) {
+            continue;
+        }
+        memset(e->corner, CORNER_ANY, (size_t)e->n_inputs);
+        for (int i = first; i < e->n_coefficients; i++) {
+            mt_enclosure_coefficient *const c = &e->coefficients[i];
+            c->shares = c->open && share_corner(e, c, side, e->corner);
+            c->open = c->open && !c->shares;
+        }
+        enclose_corner(e, lo, hi);
+        for (int i = first; i < e->n_coefficients; i++) {
             double *const v = &e->value[side][i];
-            const double corner = e->node[side][c->node];
-            *v = side == MT_LOW ? fmax(*v, corner) : fmin(*v, corner);
+            const double at_corner = e->node[side][e->coefficients[i].node];
+            if (e->coefficients[i].shares) {
+                *v = side == MT_LOW ? fmax(*v, at_corner) : fmin(*v, at_corner);
+            }
         }
     }
+}
+
+/* Bounds of dependent coefficients: the best of the plain enclosure, the mean value's and that
+ * of the corners. The gradient's enclosure is in dnode. */
+static void sharpen(mt_enclosure *e, const double *lo, const double *hi)
+{
+    mean_values(e, lo, hi);
+    sharpen_by_corners(e, MT_LOW, lo, hi);
+    sharpen_by_corners(e, MT_HIGH, lo, hi);
 }
 
 void mt_enclosure_bounds(mt_enclosure *e, const double *lo, const double *hi)
 {
     bool dependent = false;
-    mt_program_interval(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH]);
     for (int i = 0; i < e->n_coefficients; i++) {
-        const mt_enclosure_coefficient *const c = &e->coefficients[i];
-        e->value[MT_LOW][i] = e->node[MT_LOW][c->node];
-        e->value[MT_HIGH][i] = e->node[MT_HIGH][c->node];
-        dependent = dependent || c->dependent;
+        dependent = dependent || e->coefficients[i].dependent;
+    }
+    if (dependent) {
+        mt_program_interval_gradient(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH],
+                                     e->dnode[MT_LOW], e->dnode[MT_HIGH]);
+    } else {
+        mt_program_interval(&e->program, lo, hi, e->node[MT_LOW], e->node[MT_HIGH]);
+    }
+    for (int i = 0; i < e->n_coefficients; i++) {
+        e->value[MT_LOW][i] = e->node[MT_LOW][e->coefficients[i].node];
+        e->value[MT_HIGH][i] = e->node[MT_HIGH][e->coefficients[i].node];
     }
     if (!dependent) {
         return;

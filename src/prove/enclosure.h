@@ -48,6 +48,8 @@ typedef struct mt_enclosure_coefficient {
     bool mass;        /* first seen in the mass matrix */
     mt_sign required;
     bool dependent; /* an input occurs twice in it: interval arithmetic alone is not tight */
+    bool open; /* work: its bound at a corner is still to be found; shares: is at this one */
+    bool shares;
     /* [n_inputs] sign of the derivative over the bounds; 0: zero, or it changes */
     signed char *sign;
     bool monotone; /* monotone in all its inputs over the bounds */
@@ -112,6 +114,7 @@ typedef struct mt_enclosure {
     double *node[2];            /* [program.count] work */
     double *dnode[2];           /* [program.count x n_inputs] work */
     double *corner_x[2];        /* [n_inputs] work */
+    unsigned char *corner;      /* [n_inputs] work */
     double *at[MT_MATRICES][2]; /* n x n, lower; mass: NULL where it does not vary */
     double *work;               /* n x n */
     double slack_k;             /* slack of an eigenvalue: slack_k + slack_m lambda */
