@@ -82,6 +82,7 @@ typedef struct mt_nlp_options {
     bool settles;
     /* starts end when the first `agree` of them all reach one feasible design; 0: never */
     int agree;
+    bool any_best;     /* ... or, at several designs, one value of f to five digits */
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* number of distinct solutions kept; 0: 16 */
     /* f is half of the squared total change: unidentifiable directions are sought without it

@@ -769,10 +769,22 @@ bool mt_nlp_solution_pool_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *
     return w > 0 && n > w + 2 && 2.0 * w * (n - 1) < ((2.0 * w) + 1.0) * (n - w - 2);
 }
 
+/* True where all ends are as good as the first. */
+static bool are_equally_good(const mt_nlp_solution_pool *all)
+{
+    bool equal = all->count > 0;
+    const double f = all->count > 0 ? mt_nlp_local_stand(&all->at[0])->f : nan("");
+    for (int i = 0; i < all->count && equal; i++) {
+        equal = fabs(mt_nlp_local_stand(&all->at[i])->f - f) <= LOWER * fabs(f);
+    }
+    return equal;
+}
+
 bool mt_nlp_solution_pool_agree(mt_nlp_engine *e, const mt_nlp_solution_pool *all)
 {
     int places = 0;
-    return count_places(e, all, &places) == all->starts && places == 1;
+    return count_places(e, all, &places) == all->starts &&
+           (places == 1 || (e->opt.any_best && are_equally_good(all)));
 }
 
 bool mt_nlp_came_to_rest(const mt_nlp_local *s)

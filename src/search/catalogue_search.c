@@ -32,6 +32,8 @@
 enum { PER_TASK = 64 };
 /* Starts of the continuous search of one combination: 4 + 2 n, where the study does not say. */
 enum { STARTS_BASE = 4, STARTS_PER_VARIABLE = 2 };
+/* ... and so many where these all end at one feasible design. */
+enum { STARTS_AGREE = 4 };
 /* Of one whose design is known: the original and that. */
 enum { KNOWN_STARTS = 2 };
 /* So many that miss a limit between the positions are enough to let the others stand as what
@@ -288,6 +290,7 @@ static mt_status close_on(const mt_catalogue_search *d, const mt_combination *c,
     MT_TRY(mt_catalogue_search_close(d->c, x, w, mem, out, err));
     if (out->search.starts <= 0) {
         out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_listed));
+        out->agree = STARTS_AGREE;
     }
     out->search.max_evaluations = budget > 1 ? budget - 1 : budget; /* its objectives */
     out->proof_work = fmin(out->proof_work, MT_CERTIFY_WORK);       /* there are many */

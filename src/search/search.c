@@ -322,6 +322,8 @@ static mt_nlp_options options_of(const mt_subproblem *c)
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = c->search.seed;
     opt.starts = c->search.starts > 0 ? c->search.starts : c->starts;
+    opt.agree = c->agree;
+    opt.any_best = c->as_found;
     opt.max_evals = c->search.max_evaluations;
     opt.least_change = c->stages[c->stage].type == MT_OBJECTIVE_CHANGE;
     return opt;

@@ -139,7 +139,45 @@ static void nlp_starts__end_where_the_first_ones_agree(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* A trough with its bottom at t0 = 0 and one value along it, and a second one at t0 = 2 that is
+ * higher by target[0]. */
+static void troughs(const nlp_case *c, const double *t, mt_nlp_values *out)
+{
+    const bool second = t[0] > 1.0;
+    const double d = second ? t[0] - 2.0 : t[0];
+    out->f = 1.0 + (0.5 * d * d) + (second ? c->target[0] : 0.0);
+    out->df[0] = d;
+    out->df[1] = 0.0;
+    out->in[0] = t[0] + 5.0; /* it always holds */
+    out->din[0] = 1.0;
+    out->din[1] = 0.0;
+}
+
+/* Equally good ends in several places are enough where any of them will do, and only there. */
+static void nlp_starts__end_where_the_first_ones_are_equally_good(mt_test *t)
+{
+    nlp_case c = {0};
+    enum { ALL = 12, FIRST = 4 };
+    for (int k = 0; k < 4; k++) {
+        const bool any = k % 2 == 1;
+        const bool higher = k >= 2;
+        mt_test_row(t, "any best %d, second trough higher %d", any, higher);
+        case_begin(&c, 2, troughs, -3, 3);
+        c.nlp.n_in = 1;
+        c.target[0] = higher ? 1e-3 : 0.0;
+        mt_nlp_options opt = mt_nlp_options_default();
+        opt.starts = ALL;
+        opt.agree = FIRST;
+        opt.any_best = any;
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        CHECK_INT(t, c.result.starts, any && !higher ? FIRST : ALL);
+        CHECK_NEAR(t, c.result.solutions[0].f, 1.0, 1e-8);
+    }
+    mt_arena_free(&c.mem);
+}
+
 MT_TEST_MAIN(MT_TEST(nlp_starts__fill_the_bounds_in_any_dimension),
              MT_TEST(nlp_starts__beyond_40_variables_are_not_constant),
              MT_TEST(nlp_starts__seed_turns_the_sequence_reproducibly),
-             MT_TEST(nlp_starts__end_where_the_first_ones_agree))
+             MT_TEST(nlp_starts__end_where_the_first_ones_agree),
+             MT_TEST(nlp_starts__end_where_the_first_ones_are_equally_good))
