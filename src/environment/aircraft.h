@@ -2,7 +2,10 @@
 #ifndef ENVIRONMENT_AIRCRAFT_H
 #define ENVIRONMENT_AIRCRAFT_H
 
+#include "base/diagnostics.h"
 #include "base/document.h"
+#include "io/options.h"
+#include "io/reader.h"
 
 /* A catalogue of rotors: plain records, read by io. Each value names its source and says
  * whether the value was confirmed there. */
@@ -12,6 +15,8 @@ typedef struct mt_aircraft_value {
     bool confirmed;   /* confirmed in a public document: its source */
     const char *source;
 } mt_aircraft_value;
+
+enum { MT_MAX_BLADES = 20 };
 
 typedef struct mt_aircraft_rotor {
     mt_aircraft_value speed;
@@ -33,7 +38,22 @@ typedef struct mt_aircraft_list {
 
 /* The aircraft of that name; NULL where the catalogue has none. */
 const mt_aircraft *mt_aircraft_find(const mt_aircraft_list *list, const char *name);
-/* The nearest name of the catalogue, for "did you mean"; NULL: none is near. Scratch in mem. */
-const char *mt_aircraft_nearest(const mt_aircraft_list *list, const char *name, mt_arena *mem);
+
+/**
+ * Read and check a catalogue of aircraft (format "modetune-aircraft/1").
+ * @param[in]  mem  owns the records; not freed on failure
+ * Fails and messages as for mt_model_load.
+ */
+mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
+                           mt_aircraft_list *out, mt_diagnostics *messages, mt_err *err);
+
+/* Name of the catalogue built into the program, and the options that read it; text must live as
+ * long as the options. */
+extern const char mt_aircraft_own_name[];
+mt_io_options mt_aircraft_own(mt_file_text *text);
+
+/* The key tables of a catalogue of aircraft, for the test that compares them with the JSON
+ * Schema; *n is their number. */
+const mt_key_table *const *mt_aircraft_key_tables(int *n);
 
 #endif

@@ -8,55 +8,6 @@ static const double PERCENT = 100.0;
 /* A merged band lists so many names. */
 enum { LISTED_MOST = 6 };
 
-bool mt_harmonic_parse(const char *text, mt_harmonic *out)
-{
-    const char *s = text;
-    mt_harmonic h = {.text = text, .addr = MT_NO_ADDR};
-    *out = (mt_harmonic){.addr = MT_NO_ADDR};
-    if (*s == '0') {
-        return false;
-    }
-    for (; *s >= '0' && *s <= '9'; s++) {
-        h.multiple = 10 * h.multiple + (*s - '0');
-        if (h.multiple > MT_MAX_MULTIPLE) {
-            return false;
-        }
-    }
-    if (*s == 'n' || *s == 'N') {
-        h.blade_count = true;
-        s++;
-    }
-    if ((h.multiple == 0 && !h.blade_count) || (*s != 'P' && *s != 'T') || s[1] != '\0') {
-        return false;
-    }
-    h.multiple = h.multiple == 0 ? 1 : h.multiple;
-    h.tail = *s == 'T';
-    *out = h;
-    return true;
-}
-
-mt_rotor mt_rotor_default(mt_addr addr)
-{
-    return (mt_rotor){
-        .speed_hz = nan(""),
-        .tail_speed_hz = nan(""),
-        .range_lower = 1.0,
-        .range_upper = 1.0,
-        .margin_percent = nan(""),
-        .addr = addr,
-    };
-}
-
-double mt_rotor_harmonic_hz(const mt_rotor *rotor, const mt_harmonic *harmonic)
-{
-    const double speed = harmonic->tail ? rotor->tail_speed_hz : rotor->speed_hz;
-    const int blades = harmonic->tail ? rotor->tail_blades : rotor->blades;
-    if (harmonic->blade_count && blades < 1) {
-        return nan("");
-    }
-    return speed * (double)(harmonic->multiple * (harmonic->blade_count ? blades : 1));
-}
-
 /* A band before it is merged with others: `what` happens at the rotor `of` (NULL: nobody's). */
 typedef struct part {
     mt_band band;

@@ -4,6 +4,7 @@
 
 #include "base/document.h"
 #include "environment/machine.h"
+#include "environment/rotor.h"
 
 /*
  * Forbidden frequency bands: from lists in Hz, from the harmonics of rotors and from the orders
@@ -19,55 +20,6 @@
  * merged band and moves continuously meets one of the bases before it can reach a gap between
  * them.
  */
-
-/* A harmonic as written: "4P", "nP", "2nP" of the main rotor, "1T", "nT" of the tail rotor. n
- * (or N) is the number of blades. */
-typedef struct mt_harmonic {
-    int multiple;     /* the number in front, 1 where there is none */
-    bool blade_count; /* times the number of blades */
-    bool tail;        /* of the tail rotor */
-    const char *text;
-    mt_addr addr;
-} mt_harmonic;
-
-enum {
-    MT_MAX_MULTIPLE = 999,
-    MT_MAX_BLADES = 20,
-    MT_DEFAULT_CLUSTER = 2,
-    MT_MAX_CLUSTER = 100
-};
-
-/**
- * Read "[number][n]P" or "...T": a number from 1 to MT_MAX_MULTIPLE without leading zeros, n or
- * N, or both. Sets all but addr; text is not copied. Returns false (out is zeroed) for anything
- * else.
- */
-bool mt_harmonic_parse(const char *text, mt_harmonic *out);
-
-/* Numbers that are not given are NaN, counts 0. */
-typedef struct mt_rotor {
-    /* of the catalogue, which gives speeds and blades; s NULL: the file gives them */
-    mt_name aircraft;
-    const char *name; /* in labels; NULL: the aircraft's, else "rotor" */
-    double speed_hz;
-    int blades;
-    bool has_tail; /* the file gives a tail rotor */
-    double tail_speed_hz;
-    int tail_blades;
-    int n_harmonics;
-    mt_harmonic *harmonics;
-    /* speeds from range_lower * speed to range_upper * speed; default 1 and 1 */
-    double range_lower;
-    double range_upper;
-    double margin_percent; /* default: that of the list of bands */
-    mt_addr addr;
-} mt_rotor;
-
-/* A rotor with every optional member at "not given" or its default, all addresses at addr. */
-mt_rotor mt_rotor_default(mt_addr addr);
-/* Frequency of a harmonic at the nominal speed [Hz]; NaN where its speed or its number of
- * blades is not given. */
-double mt_rotor_harmonic_hz(const mt_rotor *rotor, const mt_harmonic *harmonic);
 
 typedef struct mt_band_hz {
     double lower_hz;
@@ -89,6 +41,9 @@ typedef struct mt_bands {
     int n_notes;
     const char **notes; /* one sentence for each merger */
 } mt_bands;
+
+/* Modes of a cluster, which one band may hold. */
+enum { MT_DEFAULT_CLUSTER = 2, MT_MAX_CLUSTER = 100 };
 
 /* The sources of a list of bands. */
 typedef struct mt_bands_source {

@@ -2,6 +2,7 @@
 #include "environment/machine.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { WHOLE_DIGITS = 3, DECIMALS = 3, TEN = 10, THOUSAND = 1000 };
 
@@ -43,6 +44,35 @@ bool mt_order_parse(const char *text, char letter, mt_order *out)
     }
     *out = (mt_order){.thousandths = value, .text = text, .addr = MT_NO_ADDR};
     return true;
+}
+
+const char *mt_read_multiple_meant(const mt_reader *r, const char *text, char letter)
+{
+    static const char *const ways[] = {"",        "p",     "/rev", "/turn",   "perrev",
+                                       "perturn", "omega", "x",    "\xC3\x97"};
+    char plain[16] = "";
+    size_t digits = 0;
+    size_t n = 0;
+    for (const char *s = text; *s != '\0'; s++) { /* without blanks, small letters */
+        const bool capital = *s >= 'A' && *s <= 'Z';
+        if (n + 1 >= sizeof plain) {
+            return NULL;
+        }
+        if (*s != ' ') {
+            plain[n++] = (char)(capital ? *s - 'A' + 'a' : *s);
+        }
+    }
+    plain[n] = '\0';
+    digits = strspn(plain, letter == 'P' || letter == 'T' ? "0123456789" : "0123456789.");
+    const bool blades = plain[digits] == 'n' && letter == 'P';
+    const char *const way = plain + digits + (blades ? 1 : 0);
+    bool known = way[0] != '\0' && way[1] == '\0' && way[0] == (char)(letter - 'A' + 'a');
+    for (int i = 0; i < MT_COUNT(ways); i++) {
+        known = known || strcmp(way, ways[i]) == 0;
+    }
+    return known && (digits > 0 || blades) ? mt_arena_printf(r->mem, "%.*s%s%c", (int)digits,
+                                                             plain, blades ? "n" : "", letter)
+                                           : NULL;
 }
 
 mt_gear mt_gear_default(mt_addr addr)

@@ -3,6 +3,7 @@
 #define ENVIRONMENT_MACHINE_H
 
 #include "base/document.h"
+#include "io/reader.h"
 
 /*
  * A machine that excites: an engine, a pump, a gearbox. Its shaft turns at f [1/s], anywhere
@@ -33,6 +34,10 @@ enum { MT_MAX_ORDER_THOUSANDTHS = 999999, MT_MAX_TEETH = 9999, MT_MAX_SIDEBANDS 
  * (out is zeroed) for anything else.
  */
 bool mt_order_parse(const char *text, char letter, mt_order *out);
+
+/* The correct form, with this letter, of a multiple per turn written otherwise ("4p", "4/rev",
+ * "2"); NULL: not a multiple. */
+const char *mt_read_multiple_meant(const mt_reader *r, const char *text, char letter);
 
 typedef struct mt_gear {
     const char *name; /* NULL: the machine's */

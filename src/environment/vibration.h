@@ -5,8 +5,9 @@
 #include "modetune/profile.h"
 
 #include "environment/aircraft.h"
-#include "environment/bands.h"
-#include "environment/psd.h"
+#include "environment/rotor.h"
+#include "io/options.h"
+#include "io/reader.h"
 
 /*
  * A profile of vibration: the acceleration of a base. It has random parts, whose densities add
@@ -14,6 +15,32 @@
  * random. SI; levels are also kept in g, as files give them.
  */
 #define MT_STANDARD_GRAVITY 9.80665 /* m/s^2 to 1 g */
+
+/*
+ * A one-sided power spectral density by its breakpoints: G(f) = G_i (f / f_i)^b between
+ * breakpoints i and i + 1, a straight line in log-log scales of b 10 log10(2) dB per octave;
+ * 0 below the first and above the last. Two breakpoints at one frequency are a step.
+ */
+typedef struct mt_psd {
+    int n;         /* at least 2 */
+    double *hz;    /* [n] above 0, ascending, at most two the same, the ends not */
+    double *level; /* [n] above 0 [unit of the input^2/Hz] */
+} mt_psd;
+
+/* ln(b / a) of numbers above 0, exact to rounding next to 1. */
+double mt_psd_log_ratio(double a, double b);
+/* The exponent b of segment i, 0 <= i < n - 1; 0 of a step. */
+double mt_psd_exponent(const mt_psd *psd, int i);
+/* Slope of segment i [dB/octave]. */
+double mt_psd_slope_db(const mt_psd *psd, int i);
+/* G(f); the larger level at a step. */
+double mt_psd_at(const mt_psd *psd, double hz);
+/* Integral of (f / f_1)^(e - 1) df / f_1 from f_1 to f_2, l = ln(f_2 / f_1). */
+double mt_psd_power_integral(double e, double l);
+/* Integral of G df between two frequencies, in closed form [unit of the input^2]. */
+double mt_psd_area(const mt_psd *psd, double from_hz, double to_hz);
+/* Integral of G df over all frequencies [unit of the input^2]. */
+double mt_psd_mean_square(const mt_psd *psd);
 
 /* The origin of a number; assumed numbers are marked wherever they are used. */
 typedef struct mt_vibration_origin {
@@ -27,7 +54,6 @@ typedef struct mt_vibration_point {
     double level;    /* NaN: from the slope */
     double slope_db; /* [dB/octave], NaN: not given */
     mt_addr addr;
-    mt_addr hz_addr;
 } mt_vibration_point;
 
 typedef struct mt_vibration_random {
@@ -37,7 +63,7 @@ typedef struct mt_vibration_random {
     double published_rms; /* RMS of the random part that the source prints [m/s^2], NaN: none */
     mt_vibration_origin origin;
     mt_addr addr;
-    mt_psd psd;      /* [(m/s^2)^2/Hz], by mt_vibration_finish */
+    mt_psd psd;      /* [(m/s^2)^2/Hz], made when it is read */
     double *level_g; /* [psd.n] the same in g^2/Hz */
     double rms;      /* RMS of the input itself [m/s^2] */
 } mt_vibration_random;
@@ -93,19 +119,31 @@ struct mt_vibration {
     /* the combined peak: sigma RMS + the peaks of the tones by this rule */
     double sigma; /* default 3 */
     mt_vibration_sum rule;
-    /* by mt_vibration_finish */
+    /* made when it is read */
     int n_tones;
     mt_vibration_tone *tones;
     int n_marks;
     const char **marks; /* sentences about values that are assumed or not confirmed */
 };
 
-/* A profile with every member at its default. Fails: MT_E_MEMORY. */
-mt_status mt_vibration_new(mt_vibration **out, mt_err *err);
+/**
+ * Read and check a profile of vibration (format "modetune-profile/1") and the catalogue of
+ * aircraft of its rotors: the one that it names, else aircraft.json in its folder, else the one
+ * built into the program.
+ * @param[out] out  mt_vibration_delete; NULL on failure
+ * Fails and messages as for mt_study_load.
+ */
+mt_status mt_vibration_load(const char *path, const mt_io_options *opt, mt_vibration **out,
+                            mt_diagnostics *messages, mt_err *err);
+/* As mt_vibration_load, of a profile that another file names: it must lie within opt->root. */
+mt_status mt_vibration_load_within(const char *path, const mt_io_options *opt,
+                                   mt_vibration **out, mt_diagnostics *messages, mt_err *err);
 
-/* Check all numbers and note every problem, look up aircraft, resolve slopes into levels, make
- * tones and marks. Parts with errors are left empty; a shortage is remembered by the arena. */
-void mt_vibration_finish(mt_vibration *v, mt_diags *diags);
+/* The key tables of a profile, for the test that compares them with the JSON Schema; *n is
+ * their number. */
+const mt_key_table *const *mt_profile_key_tables(int *n);
+/* The types that members of a profile share; *n is their number. */
+const mt_schema_type *mt_profile_types(int *n);
 
 /* Sum of the densities of all random parts at a frequency [(m/s^2)^2/Hz]. */
 double mt_vibration_density(const mt_vibration *v, double hz);

@@ -72,6 +72,14 @@ int mt_object_one_of(mt_reader *r, const mt_object *o, const char *first, int n)
     return which;
 }
 
+void mt_object_leave_out(mt_object *o, const char *first, int n)
+{
+    const int begin = key_index(o, first);
+    for (int k = begin; k < begin + n; k++) {
+        o->found[k] = MT_NO_ADDR;
+    }
+}
+
 void mt_object_read(mt_reader *r, const mt_object *o, void *item)
 {
     for (int k = 0; k < o->table->n; k++) {
@@ -94,6 +102,9 @@ bool mt_members_read(mt_reader *r, mt_addr value, const mt_key_table *table, voi
     }
     if (table->defaults != NULL) {
         table->defaults(item, value, which);
+    }
+    if (table->check != NULL) {
+        table->check(r, &o);
     }
     mt_object_read(r, &o, item);
     if (table->finish != NULL) {
@@ -121,6 +132,26 @@ void mt_read_ref(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 void mt_read_refs(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     *(mt_name_list *)place(key, item) = mt_reader_refs(r, value);
+}
+
+void mt_read_flag(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    bool *const at = place(key, item);
+    *at = mt_reader_flag(r, value, *at);
+}
+
+void mt_read_value(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double *const at = place(key, item);
+    *at = mt_json_number(r->doc, value);
+    mt_reader_check_range(r, value, value, *at);
+}
+
+void mt_read_accepted(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    (void)key;
+    (void)item;
+    r->accepted = mt_reader_accepted(r, value);
 }
 
 void mt_read_count(mt_reader *r, const mt_key *key, mt_addr value, void *item)
@@ -151,24 +182,40 @@ void mt_read_choice(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 
 void mt_read_inner(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    (void)mt_members_read(r, value, key->of, item);
+    (void)mt_members_read(r, value, key->of, place(key, item));
+}
+
+/* Items by their table, in `room` for all of them. */
+static void read_all(mt_reader *r, mt_items items, const mt_key_table *of, char *room, int *n)
+{
+    while (mt_items_next(&items)) {
+        *n += mt_members_read(r, items.at, of, room + ((size_t)*n * of->size)) ? 1 : 0;
+    }
+}
+
+/* The items of a list, or the only one without it. */
+static mt_items items_of(mt_reader *r, mt_addr list, const char *what)
+{
+    const bool may_be_empty =
+        what == NULL || list == MT_NO_ADDR || mt_json_type_of(r->doc, list) != MT_JSON_ARRAY;
+    return may_be_empty ? mt_reader_one_or_items(r, list) : mt_reader_some_items(r, list, what);
 }
 
 void *mt_members_list(mt_reader *r, mt_addr list, const char *what, const mt_key_table *of,
                       int *n)
 {
-    mt_items items =
-        what != NULL ? mt_reader_some_items(r, list, what) : mt_reader_items(r, list);
+    mt_items items = items_of(r, list, what);
     char *const room = mt_reader_room(r, &items, of->size);
-    while (mt_items_next(&items)) {
-        *n += mt_members_read(r, items.at, of, room + ((size_t)*n * of->size)) ? 1 : 0;
-    }
+    read_all(r, items, of, room, n);
     return room;
 }
 
 void mt_read_items(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     int *const n = (int *)(void *)((char *)item + key->other);
-    void *const list = mt_members_list(r, value, key->what, key->of, n);
+    mt_items items = items_of(r, value, key->what);
+    char *const list = mt_reader_room(r, &items, key->of->size);
+    /* known to the readers of items, which may look at the ones before theirs */
     memcpy(place(key, item), &list, sizeof list);
+    read_all(r, items, key->of, list, n);
 }

@@ -37,6 +37,31 @@
     {                                                             \
         .name = (label), .type = MT_KEY_TEXT, .says = __VA_ARGS__ \
     }
+/* "format", of a document: the list of its only name */
+#define MT_M_FORMAT(list)                                                           \
+    {                                                                               \
+        .name = "format", .type = MT_KEY_TEXT, .required = true, .choices = (list), \
+        .n_choices = MT_COUNT(list), .says = "Kind and version of this file."       \
+    }
+/* Names of warnings that the document accepts where warnings are given at once: they go to its
+ * reader */
+#define MT_M_ACCEPTED(...)                                                                   \
+    {                                                                                        \
+        .name = "accepted", .type = MT_KEY_LIST, .read = mt_read_accepted,                   \
+        .choices = mt_warning_names, .n_choices = MT_WARNING_NAME_COUNT, .says = __VA_ARGS__ \
+    }
+/* bool */
+#define MT_M_FLAG(label, must, m, ...)                            \
+    {                                                             \
+        .name = (label), .type = MT_KEY_BOOL, .required = (must), \
+        MT_M_TO(mt_read_flag, bool, m), .says = __VA_ARGS__       \
+    }
+/* double, a number without parameters */
+#define MT_M_VALUE(label, must, m, row, ...)                                      \
+    {                                                                             \
+        .name = (label), .type = MT_KEY_VALUE, .required = (must), MT_M_ROW(row), \
+        MT_M_TO(mt_read_value, double, m), .says = __VA_ARGS__                    \
+    }
 /* A member that its object's reader reads */
 #define MT_M_JUST(label, kind, must, row, ...)                                     \
     {                                                                              \
@@ -92,6 +117,12 @@
     {                                                                                 \
         .name = (label), .type = MT_KEY_OBJECT, .read = mt_read_inner, .of = &(table) \
     }
+/* An object whose members go into a struct of its own, a member of the struct */
+#define MT_M_PART(label, must, m, part, table, ...)                          \
+    {                                                                        \
+        .name = (label), .type = MT_KEY_OBJECT, .required = (must),          \
+        MT_M_TO(mt_read_inner, part, m), .of = &(table), .says = __VA_ARGS__ \
+    }
 /* Structs and their number (int); a list that must not be empty is called `kind` in messages,
  * else NULL. An item that is no such object is left out. */
 #define MT_M_ITEMS(label, must, m, n, item, kind, table, ...)                           \
@@ -122,13 +153,15 @@ int mt_object_one_of(mt_reader *r, const mt_object *o, const char *first, int n)
 
 /* Read the rows of a matched object into the struct, in the table's order. */
 void mt_object_read(mt_reader *r, const mt_object *o, void *item);
-/* Match an object with its table and read it: the table's defaults, its rows, its `finish`.
+/* Leave out n members (neighbours in the table, from `first` on), as if of a wrong type. */
+void mt_object_leave_out(mt_object *o, const char *first, int n);
+/* Match an object with its table and read it: the table's defaults, `check`, rows, `finish`.
  * Returns false (noted) where the value is no such object, or where it is not known which of
  * the members that exclude each other is meant. */
 bool mt_members_read(mt_reader *r, mt_addr value, const mt_key_table *table, void *item);
 
-/* The items of a list, read by their table; *n: how many are kept. what: as of
- * mt_reader_some_items; NULL: the list may be empty. */
+/* The items of a list, or the single one that is written without it, read by their table; *n:
+ * how many are kept. what: as of mt_reader_some_items; NULL: the list may be empty. */
 void *mt_members_list(mt_reader *r, mt_addr list, const char *what, const mt_key_table *of,
                       int *n);
 
@@ -136,6 +169,9 @@ void *mt_members_list(mt_reader *r, mt_addr list, const char *what, const mt_key
 void mt_read_text(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_ref(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_refs(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_read_flag(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_read_value(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_read_accepted(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_count(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_long(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_ulong(mt_reader *r, const mt_key *key, mt_addr value, void *item);

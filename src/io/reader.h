@@ -111,6 +111,9 @@ struct mt_key_table {
     size_t size; /* of the struct */
     /* Fill a new struct; which: of the members that exclude each other, MT_ABSENT: none */
     void (*defaults)(void *item, mt_addr addr, int which);
+    /* Note what is wrong with members together, before rows are read; what cannot be read
+     * then is left out (mt_object_leave_out) */
+    void (*check)(mt_reader *r, mt_object *o);
     /* Read what rows cannot say, after them */
     void (*finish)(mt_reader *r, const mt_object *o, int which, void *item);
     /* for the JSON Schema: the sentence, examples, and what holds of members together, as

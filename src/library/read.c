@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "base/base.h"
-#include "environment/read_profile.h"
+#include "environment/vibration.h"
 #include "io/options.h"
 #include "library/scene_designs.h"
 #include "report/page.h"

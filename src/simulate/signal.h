@@ -2,7 +2,7 @@
 #ifndef SIMULATE_SIGNAL_H
 #define SIMULATE_SIGNAL_H
 
-#include "environment/psd.h"
+#include "environment/vibration.h"
 #include "expr/program.h"
 
 /* A function of time: a force, an acceleration of the ground or a motion of a drive. */

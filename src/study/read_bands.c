@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "environment/read_harmonics.h"
 #include "environment/rotor.h"
 #include "io/file.h"
 

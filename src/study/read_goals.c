@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "environment/read_profile.h"
+#include "environment/vibration.h"
 #include "io/shipped.h"
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */

@@ -2,7 +2,7 @@
 #ifndef STUDY_READ_PRIV_H
 #define STUDY_READ_PRIV_H
 
-#include "environment/read_aircraft.h"
+#include "environment/aircraft.h"
 #include "io/members.h"
 #include "io/options.h"
 #include "model/read.h"

@@ -2,7 +2,7 @@
 #ifndef VIBRATION_SPECTRAL_H
 #define VIBRATION_SPECTRAL_H
 
-#include "environment/psd.h"
+#include "environment/vibration.h"
 #include "vibration/frf.h"
 
 enum { MT_GAUSS_NODES = 24 };

@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "environment/read_aircraft.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
+#include "environment/vibration.h"
 #include "io/file.h"
 #include "io/json.h"
 #include "io/options.h"

@@ -15,8 +15,7 @@
 
 #include "base/diagnostics.h"
 #include "base/possible.h"
-#include "environment/read_aircraft.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
 #include "environment/vibration.h"
 #include "io/file.h"
 #include "io/json.h"

@@ -6,8 +6,8 @@
  */
 #include <string.h>
 
-#include "environment/read_aircraft.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
+#include "environment/vibration.h"
 #include "io/file.h"
 #include "model/read.h"
 #include "mt_test.h"

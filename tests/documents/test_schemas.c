@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "environment/read_aircraft.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
+#include "environment/vibration.h"
 #include "io/file.h"
 #include "io/json.h"
 #include "model/read.h"
@@ -56,6 +56,18 @@ static void add_reference(mt_text *out, const char *definition)
     mt_text_addf(out, "\"allOf\": [{\"$ref\": \"#/definitions/%s\"}]", definition);
 }
 
+/* A string, or each of a list. */
+static void add_string_type(mt_text *out, const mt_key *key)
+{
+    mt_text_add(out, "\"type\": \"string\"");
+    mt_text_add(out, key->pattern == NULL ? "" : ", ");
+    add_text(out, "pattern", key->pattern);
+    if (key->choices != NULL) {
+        mt_text_add(out, ", ");
+        add_texts(out, "enum", key->n_choices, key->choices);
+    }
+}
+
 static void add_list(mt_text *out, const mt_key *key)
 {
     mt_text_add(out, "\"type\": \"array\"");
@@ -70,11 +82,7 @@ static void add_list(mt_text *out, const mt_key *key)
         /* kinds of goals are told apart by their type */
         mt_text_addf(out, "\"$ref\": \"#/definitions/%s\"", key->of->what);
     } else {
-        mt_text_add(out, "\"type\": \"string\"");
-        if (key->choices != NULL) {
-            mt_text_add(out, ", ");
-            add_texts(out, "enum", key->n_choices, key->choices);
-        }
+        add_string_type(out, key);
     }
     mt_text_add(out, "}");
 }
@@ -83,13 +91,7 @@ static void add_list(mt_text *out, const mt_key *key)
 static void add_type(mt_test *t, mt_text *out, const mt_key *key)
 {
     if (key->type == MT_KEY_TEXT) {
-        mt_text_add(out, "\"type\": \"string\"");
-        mt_text_add(out, key->pattern == NULL ? "" : ", ");
-        add_text(out, "pattern", key->pattern);
-        if (key->choices != NULL) {
-            mt_text_add(out, ", ");
-            add_texts(out, "enum", key->n_choices, key->choices);
-        }
+        add_string_type(out, key);
     } else if (key->type == MT_KEY_COUNT) {
         mt_text_addf(out, "\"type\": \"integer\", \"minimum\": %d, \"maximum\": %d", key->least,
                      key->most);
@@ -97,6 +99,12 @@ static void add_type(mt_test *t, mt_text *out, const mt_key *key)
         mt_text_add(out, "\"type\": \"boolean\"");
     } else if (key->type == MT_KEY_LIST) {
         add_list(out, key);
+    } else if (key->type == MT_KEY_OBJECT && key->of != NULL) {
+        add_reference(out, key->of->what);
+    } else if (key->type == MT_KEY_OBJECT_OR_LIST && key->of != NULL) {
+        mt_text_addf(out, "\"anyOf\": [{\"$ref\": \"#/definitions/%s\"}, {", key->of->what);
+        add_list(out, key);
+        mt_text_add(out, "}]");
     } else if (key->type == MT_KEY_VALUE) {
         mt_text_add(out, "\"type\": \"number\"");
     } else if (key->type == MT_KEY_NUMBER) {
@@ -114,7 +122,8 @@ static void add_member(mt_test *t, mt_text *out, const mt_key_table *table, cons
 {
     add_string(out, key->name);
     mt_text_add(out, ": {");
-    if (key->type == MT_KEY_OBJECT && key->schema == NULL && key->of != NULL) {
+    if (key->type == MT_KEY_OBJECT && key->schema == NULL && key->of != NULL &&
+        key->says == NULL) {
         mt_text_addf(out, "\"$ref\": \"#/definitions/%s\"}", key->of->what);
         return;
     }

@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 #include "base/arena.h"
-#include "environment/read_aircraft.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
+#include "environment/vibration.h"
 #include "io/file.h"
 #include "model/read.h"
 #include "mt_refusals.h"

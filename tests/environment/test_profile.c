@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "environment/read_profile.h"
+#include "environment/vibration.h"
 #include "io/options.h"
 #include "mt_refusals.h"
 

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/base.h"
-#include "environment/psd.h"
+#include "environment/vibration.h"
 #include "mt_test.h"
 
 static void psd__overall_rms_agrees_with_what_documents_print(mt_test *t)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "common/fuzz.h"
-#include "environment/read_aircraft.h"
+#include "environment/aircraft.h"
 #include "io/options.h"
 #include "io/write_json.h"
 #include "study/read.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "common/fuzz.h"
-#include "environment/read_profile.h"
+#include "environment/vibration.h"
 #include "io/options.h"
 #include "vibration/profile_response.h"
 

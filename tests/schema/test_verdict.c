@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "environment/read_aircraft.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
+#include "environment/vibration.h"
 #include "io/file.h"
 #include "io/options.h"
 #include "model/read.h"

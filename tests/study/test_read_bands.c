@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "environment/read_aircraft.h"
+#include "environment/aircraft.h"
 #include "io/options.h"
 #include "mt_refusals.h"
 #include "study/read.h"

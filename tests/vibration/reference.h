@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "environment/psd.h"
+#include "environment/vibration.h"
 #include "response/poles.h"
 
 #define REF_I  ((double complex)I)
