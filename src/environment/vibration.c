@@ -495,22 +495,20 @@ const mt_key_table *const *mt_profile_key_tables(int *n)
     return tables;
 }
 
-/* A profile with every member at its default. */
-static mt_status make_profile(mt_vibration **out, mt_err *err)
+/* A profile with every member at its default; NULL: out of memory. */
+static mt_vibration *make_profile(mt_err *err)
 {
     mt_vibration *const v = calloc(1, sizeof *v);
-    *out = NULL;
     if (v == NULL) {
-        return mt_fail_memory(err);
+        (void)mt_fail_memory(err);
+        return NULL;
     }
     *v = (mt_vibration){.axis = MT_ABSENT, .sigma = DEFAULT_SIGMA};
-    const mt_status rc = mt_arena_init(&v->mem, 0, err);
-    if (rc != MT_OK) {
+    if (mt_arena_init(&v->mem, 0, err) != MT_OK) {
         free(v);
-        return rc;
+        return NULL;
     }
-    *out = v;
-    return MT_OK;
+    return v;
 }
 
 void mt_vibration_delete(mt_vibration *v)
@@ -1002,12 +1000,12 @@ static mt_status load_from(const char *path, const char *within, const mt_io_opt
     mt_file file = {0};
     char *root = NULL;
     *out = NULL;
-    mt_status rc = make_profile(&p.v, err);
-    if (rc != MT_OK) {
-        return rc;
+    p.v = make_profile(err);
+    if (p.v == NULL) {
+        return MT_E_MEMORY;
     }
     const size_t limit = p.files.max_bytes == 0 ? MT_JSON_MAX_BYTES : p.files.max_bytes;
-    rc = mt_files_read(&p.files.files, path, within, limit, &file, err);
+    mt_status rc = mt_files_read(&p.files.files, path, within, limit, &file, err);
     if (rc != MT_OK) {
         goto done;
     }
