@@ -22,8 +22,6 @@
 
 enum { READER_PATIENCE_MS = 10000 };
 
-static const char FORMAT[] = "format";
-
 enum {
     MOST_FIELDS = 40, /* of a record */
     MOST_OUTPUTS = 16,
@@ -198,6 +196,8 @@ static void read_field(result_reader *s, mt_addr value, const mt_field *f, void 
     void *const at = (char *)item + f->offset;
     void *const other = (char *)item + f->other;
     switch (f->type) {
+    case MT_FIELD_FORMAT: /* mt_result_check_format */
+        break;
     case MT_FIELD_TEXT:
         *(const char **)at = mt_reader_text(&s->r, value);
         break;
@@ -277,16 +277,15 @@ static void read_members(result_reader *s, mt_addr value, const mt_record *recor
             if (!is_null(s, f, i.at)) {
                 read_field(s, i.at, f, item);
             }
-        } else if (f == NULL && (record != &mt_result_record || strcmp(name, FORMAT) != 0)) {
-            /* the table of the result lacks its format */
+        } else if (f == NULL) {
             mt_diag_structure(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
                               "unknown member \"%s\"", name);
         }
     }
     for (int i = 0; i < record->n; i++) {
-        if (record->fields[i].name != NULL && !seen[i]) {
-            mt_diag_structure(s->r.diags, value, "member \"%s\" is missing",
-                              record->fields[i].name);
+        const mt_field *const f = &record->fields[i];
+        if (f->name != NULL && f->type != MT_FIELD_FORMAT && !seen[i]) {
+            mt_diag_structure(s->r.diags, value, "member \"%s\" is missing", f->name);
         }
     }
 }
@@ -396,13 +395,14 @@ static void check_outputs(result_reader *s, mt_addr list)
 
 bool mt_result_check_format(mt_reader *r)
 {
+    const mt_field *const f = &mt_result_record.fields[0];
+    assert(f->type == MT_FIELD_FORMAT);
     if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT) ||
-        !mt_reader_format(r, "modetune-result/1", "result")) {
+        !mt_reader_format(r, f->format, "result")) {
         return false;
     }
-    const mt_addr format = mt_json_member(r->doc, MT_JSON_ROOT, FORMAT);
-    if (format == MT_NO_ADDR) {
-        mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", FORMAT);
+    if (mt_json_member(r->doc, MT_JSON_ROOT, f->name) == MT_NO_ADDR) {
+        mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", f->name);
     }
     return true;
 }

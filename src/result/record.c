@@ -162,6 +162,8 @@ static bool own_field(const mt_field *f, void *item, const void *like, int n_var
     case MT_FIELD_NUMBERS:
         read_counts(&t, other, other_like);
         return own_numbers(&t, mem);
+    case MT_FIELD_FORMAT:
+        return true;
     case MT_FIELD_BY_VARIABLE:
         t.n = n_variables;
         t.n_like = n_variables;
@@ -294,6 +296,7 @@ static void serialize_field(const mt_field *f, void *at, void *other, int n_vari
         serialize_numbers(at, &size, serializer, mem);
         serializer->failed = serializer->failed || (size != 0 && size != n_variables);
         break;
+    case MT_FIELD_FORMAT:
     case MT_FIELD_TYPE_COUNT:
         break;
     }

@@ -11,10 +11,12 @@
 
 /*
  * The members of a struct as a table. Writer, reader, copier and checks of results walk these
- * tables and depend on no struct. A record is plain: its texts and lists lie in an arena that
- * the record does not own.
+ * tables and depend on no struct, and the JSON Schema is written from them: every member that
+ * has a name is required, and there are no others. A record is plain: its texts and lists lie
+ * in an arena that the record does not own.
  */
 typedef enum mt_field_type {
+    MT_FIELD_FORMAT, /* a constant text, of no struct: kind and version of the file */
     MT_FIELD_TEXT,   /* const char * */
     MT_FIELD_CHOICE, /* const char *, one of `choices` */
     MT_FIELD_ENUM,   /* an enum whose names are `choices` */
@@ -44,7 +46,12 @@ typedef struct mt_field {
     mt_field_type type;
     int least;
     int n_choices;
-    int digits;            /* of a list of numbers: significant digits written; 0: all */
+    int digits;         /* of a list of numbers: significant digits written; 0: all */
+    const char *format; /* of a format: the text */
+    const char *says;   /* the sentence of the schema; NULL: that of the record */
+    /* Keywords of the schema besides those of the type, which the reader does not check here;
+     * of a list of numbers they are its items'. NULL: none */
+    const char *rules;
     bool flat;             /* of a record: in one line */
     bool nullable;         /* of a list: NULL is null, else NULL is empty */
     bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
@@ -54,12 +61,14 @@ struct mt_record {
     size_t size; /* size of the struct */
     int n;
     const mt_field *fields; /* in the order in which they are written */
+    const char *name; /* of its definition in the schema; NULL: it stands where it is used */
+    const char *says; /* the sentence of the schema; NULL: its one member says it */
 };
 
 /*
  * Macros that write the tables, with THIS for the struct. The compiler checks every member's
  * type: MT_F_MEMBER is the member's offset times 1 where its type is `of`, and does not compile
- * otherwise.
+ * otherwise. The sentence comes last; behind it `.rules` may be given.
  */
 /* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
 #define MT_F_MEMBER(of, m) (offsetof(THIS, m) * _Generic(&((THIS *)NULL)->m, of * : 1U))
@@ -67,115 +76,127 @@ struct mt_record {
     .name = (json), .type = (kind), .nullable = (or_null), .offset = MT_F_MEMBER(of, m)
 #define MT_F_ONE_OF(list) .choices = (list), .n_choices = MT_COUNT(list)
 
-#define MT_F_TEXT(json, m)                                      \
-    {                                                           \
-        MT_F_FIELD(json, MT_FIELD_TEXT, false, const char *, m) \
+#define MT_F_FORMAT(json, value, ...)                                                   \
+    {                                                                                   \
+        .name = (json), .type = MT_FIELD_FORMAT, .format = (value), .says = __VA_ARGS__ \
     }
-#define MT_F_TEXT_OR_NULL(json, m)                             \
-    {                                                          \
-        MT_F_FIELD(json, MT_FIELD_TEXT, true, const char *, m) \
-    }
-#define MT_F_CHOICE(json, m, list)                                                   \
+#define MT_F_TEXT(json, m, ...)                                                      \
     {                                                                                \
-        MT_F_FIELD(json, MT_FIELD_CHOICE, false, const char *, m), MT_F_ONE_OF(list) \
+        MT_F_FIELD(json, MT_FIELD_TEXT, false, const char *, m), .says = __VA_ARGS__ \
     }
-#define MT_F_CHOICE_OR_NULL(json, m, list)                                          \
+#define MT_F_TEXT_OR_NULL(json, m, ...)                                             \
     {                                                                               \
-        MT_F_FIELD(json, MT_FIELD_CHOICE, true, const char *, m), MT_F_ONE_OF(list) \
+        MT_F_FIELD(json, MT_FIELD_TEXT, true, const char *, m), .says = __VA_ARGS__ \
     }
-#define MT_F_ENUM(json, m, of, list)                                     \
-    {                                                                    \
-        MT_F_FIELD(json, MT_FIELD_ENUM, false, of, m), MT_F_ONE_OF(list) \
-    }
-#define MT_F_NUMBER(json, m)                                \
-    {                                                       \
-        MT_F_FIELD(json, MT_FIELD_NUMBER, false, double, m) \
-    }
-#define MT_F_NUMBER_OR_NULL(json, m)                       \
-    {                                                      \
-        MT_F_FIELD(json, MT_FIELD_NUMBER, true, double, m) \
-    }
-#define MT_F_VALUE_OR_NULL(json, m, text)                  \
-    {                                                      \
-        MT_F_FIELD(json, MT_FIELD_VALUE, true, double, m), \
-            .other = MT_F_MEMBER(const char *, text)       \
-    }
-#define MT_F_COUNT(json, m, from)                                        \
-    {                                                                    \
-        MT_F_FIELD(json, MT_FIELD_COUNT, false, int, m), .least = (from) \
-    }
-#define MT_F_COUNT_OR_NULL(json, m, from)                               \
-    {                                                                   \
-        MT_F_FIELD(json, MT_FIELD_COUNT, true, int, m), .least = (from) \
-    }
-#define MT_F_LONG(json, m)                              \
-    {                                                   \
-        MT_F_FIELD(json, MT_FIELD_LONG, false, long, m) \
-    }
-#define MT_F_FLAG(json, m)                              \
-    {                                                   \
-        MT_F_FIELD(json, MT_FIELD_FLAG, false, bool, m) \
-    }
-#define MT_F_RECORD(json, m, of, what)                                     \
-    {                                                                      \
-        MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what) \
-    }
-#define MT_F_RECORD_FLAT(json, m, of, what)                                              \
-    {                                                                                    \
-        MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what), .flat = true \
-    }
-#define MT_F_OPTION(json, m, of, what)                                      \
-    {                                                                       \
-        MT_F_FIELD(json, MT_FIELD_OPTION, true, of *, m), .record = &(what) \
-    }
-#define MT_F_LIST(json, m, n, of, what)                                                \
-    {                                                                                  \
-        MT_F_FIELD(json, MT_FIELD_LIST, false, of *, m), .other = MT_F_MEMBER(int, n), \
-                                                         .record = &(what)             \
-    }
-#define MT_F_LIST_OR_NULL(json, m, n, of, what)                                       \
+#define MT_F_CHOICE(json, m, list, ...)                                               \
     {                                                                                 \
-        MT_F_FIELD(json, MT_FIELD_LIST, true, of *, m), .other = MT_F_MEMBER(int, n), \
-                                                        .record = &(what)             \
+        MT_F_FIELD(json, MT_FIELD_CHOICE, false, const char *, m), MT_F_ONE_OF(list), \
+            .says = __VA_ARGS__                                                       \
     }
-#define MT_F_TEXTS(json, m, n)                                     \
-    {                                                              \
-        MT_F_FIELD(json, MT_FIELD_TEXTS, false, const char **, m), \
-            .other = MT_F_MEMBER(int, n)                           \
+#define MT_F_CHOICE_OR_NULL(json, m, list, ...)                                      \
+    {                                                                                \
+        MT_F_FIELD(json, MT_FIELD_CHOICE, true, const char *, m), MT_F_ONE_OF(list), \
+            .says = __VA_ARGS__                                                      \
     }
-#define MT_F_CHOICES(json, m, n, list)                             \
-    {                                                              \
-        MT_F_FIELD(json, MT_FIELD_TEXTS, false, const char **, m), \
-            .other = MT_F_MEMBER(int, n), MT_F_ONE_OF(list)        \
+#define MT_F_ENUM(json, m, of, list, ...)                                                     \
+    {                                                                                         \
+        MT_F_FIELD(json, MT_FIELD_ENUM, false, of, m), MT_F_ONE_OF(list), .says = __VA_ARGS__ \
     }
-#define MT_F_NUMBERS(json, m, n)                                                             \
+#define MT_F_NUMBER(json, m, ...)                                                \
+    {                                                                            \
+        MT_F_FIELD(json, MT_FIELD_NUMBER, false, double, m), .says = __VA_ARGS__ \
+    }
+#define MT_F_NUMBER_OR_NULL(json, m, ...)                                       \
+    {                                                                           \
+        MT_F_FIELD(json, MT_FIELD_NUMBER, true, double, m), .says = __VA_ARGS__ \
+    }
+#define MT_F_VALUE_OR_NULL(json, m, text, ...)                            \
+    {                                                                     \
+        MT_F_FIELD(json, MT_FIELD_VALUE, true, double, m),                \
+            .other = MT_F_MEMBER(const char *, text), .says = __VA_ARGS__ \
+    }
+#define MT_F_COUNT(json, m, from, ...)                                                        \
+    {                                                                                         \
+        MT_F_FIELD(json, MT_FIELD_COUNT, false, int, m), .least = (from), .says = __VA_ARGS__ \
+    }
+#define MT_F_COUNT_OR_NULL(json, m, from, ...)                                               \
     {                                                                                        \
-        MT_F_FIELD(json, MT_FIELD_NUMBERS, false, double *, m), .other = MT_F_MEMBER(int, n) \
+        MT_F_FIELD(json, MT_FIELD_COUNT, true, int, m), .least = (from), .says = __VA_ARGS__ \
     }
-#define MT_F_NUMBERS_ROUNDED(json, m, n, most)                                                \
+#define MT_F_LONG(json, m, ...)                                              \
+    {                                                                        \
+        MT_F_FIELD(json, MT_FIELD_LONG, false, long, m), .says = __VA_ARGS__ \
+    }
+#define MT_F_FLAG(json, m, ...)                                              \
+    {                                                                        \
+        MT_F_FIELD(json, MT_FIELD_FLAG, false, bool, m), .says = __VA_ARGS__ \
+    }
+#define MT_F_RECORD(json, m, of, what, ...)                                  \
+    {                                                                        \
+        MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what),  \
+                                                         .says = __VA_ARGS__ \
+    }
+#define MT_F_RECORD_FLAT(json, m, of, what, ...)                                          \
+    {                                                                                     \
+        MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what), .flat = true, \
+                                                         .says = __VA_ARGS__              \
+    }
+#define MT_F_OPTION(json, m, of, what, ...)                                   \
+    {                                                                         \
+        MT_F_FIELD(json, MT_FIELD_OPTION, true, of *, m), .record = &(what),  \
+                                                          .says = __VA_ARGS__ \
+    }
+#define MT_F_LIST(json, m, n, of, what, ...)                                     \
+    {                                                                            \
+        MT_F_FIELD(json, MT_FIELD_LIST, false, of *, m),                         \
+            .other = MT_F_MEMBER(int, n), .record = &(what), .says = __VA_ARGS__ \
+    }
+#define MT_F_LIST_OR_NULL(json, m, n, of, what, ...)                                           \
+    {                                                                                          \
+        MT_F_FIELD(json, MT_FIELD_LIST, true, of *, m), .other = MT_F_MEMBER(int, n),          \
+                                                        .record = &(what), .says = __VA_ARGS__ \
+    }
+#define MT_F_TEXTS(json, m, n, ...)                                \
+    {                                                              \
+        MT_F_FIELD(json, MT_FIELD_TEXTS, false, const char **, m), \
+            .other = MT_F_MEMBER(int, n), .says = __VA_ARGS__      \
+    }
+#define MT_F_CHOICES(json, m, n, list, ...)                                      \
+    {                                                                            \
+        MT_F_FIELD(json, MT_FIELD_TEXTS, false, const char **, m),               \
+            .other = MT_F_MEMBER(int, n), MT_F_ONE_OF(list), .says = __VA_ARGS__ \
+    }
+#define MT_F_NUMBERS(json, m, n, ...)                                                         \
     {                                                                                         \
         MT_F_FIELD(json, MT_FIELD_NUMBERS, false, double *, m), .other = MT_F_MEMBER(int, n), \
-                                                                .digits = (most)              \
+                                                                .says = __VA_ARGS__           \
     }
-#define MT_F_BY_VARIABLE(json, m)                                                            \
+#define MT_F_NUMBERS_ROUNDED(json, m, n, most, ...)                             \
+    {                                                                           \
+        MT_F_FIELD(json, MT_FIELD_NUMBERS, false, double *, m),                 \
+            .other = MT_F_MEMBER(int, n), .digits = (most), .says = __VA_ARGS__ \
+    }
+#define MT_F_BY_VARIABLE(json, m, ...)                                                        \
+    {                                                                                         \
+        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, false, double *, m), .numbers_nullable = true, \
+                                                                    .says = __VA_ARGS__       \
+    }
+#define MT_F_BY_VARIABLE_OR_NULL(json, m, ...)                                               \
     {                                                                                        \
-        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, false, double *, m), .numbers_nullable = true \
+        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, true, double *, m), .numbers_nullable = true, \
+                                                                   .says = __VA_ARGS__       \
     }
-#define MT_F_BY_VARIABLE_OR_NULL(json, m)                                                   \
-    {                                                                                       \
-        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, true, double *, m), .numbers_nullable = true \
-    }
-#define MT_F_NUMBERS_BY_VARIABLE(json, m)                          \
-    {                                                              \
-        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, false, double *, m) \
+#define MT_F_NUMBERS_BY_VARIABLE(json, m, ...)                                          \
+    {                                                                                   \
+        MT_F_FIELD(json, MT_FIELD_BY_VARIABLE, false, double *, m), .says = __VA_ARGS__ \
     }
 #define MT_F_UNWRITTEN_TEXT(m)                                 \
     {                                                          \
         MT_F_FIELD(NULL, MT_FIELD_TEXT, true, const char *, m) \
     }
-#define MT_F_RECORD_OF(fields)                   \
-    {                                            \
-        sizeof(THIS), MT_COUNT(fields), (fields) \
+#define MT_F_RECORD_OF(fields, name, says)                       \
+    {                                                            \
+        sizeof(THIS), MT_COUNT(fields), (fields), (name), (says) \
     }
 /* NOLINTEND(bugprone-macro-parentheses) */
 

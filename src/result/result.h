@@ -15,7 +15,7 @@
 /*
  * The answer of a study: plain records, no computation. All texts live in the result's arena.
  * NaN: not applicable (null in JSON). Each member has its line in the tables of result.c, which
- * drive writer, reader and copier and are compared with the schema.
+ * drive writer, reader and copier and from which schemas/result.schema.json is written.
  */
 
 typedef struct mt_result_parameter {

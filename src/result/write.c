@@ -75,6 +75,9 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
     const void *const at = (const char *)item + f->offset;
     const void *const other = (const char *)item + f->other;
     switch (f->type) {
+    case MT_FIELD_FORMAT:
+        mt_json_put_string(w, f->name, f->format);
+        break;
     case MT_FIELD_TEXT:
     case MT_FIELD_CHOICE:
         mt_json_put_string(w, f->name, mt_record_get_pointer(at));
@@ -186,7 +189,6 @@ void mt_design_put_member(mt_json_writer *w, const char *name, const mt_result *
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result)
 {
     mt_json_open(w, name, '{');
-    mt_json_put_string(w, "format", "modetune-result/1");
     mt_result_put_member(w, NULL, result);
     mt_json_close(w);
 }

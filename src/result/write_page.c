@@ -162,7 +162,6 @@ static mt_status write(const mt_result *result, mt_trade_point *whole, mt_text *
     alone.trade = &few;
     mt_json_writer w = mt_json_writer_default(out);
     mt_json_open(&w, NULL, '{');
-    mt_json_put_string(&w, "format", "modetune-result/1");
     mt_result_put_member(&w, NULL, &alone);
     put_grid(&w, result);
     mt_json_close(&w);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Each reader's table of keys holds the members of the schema's definition of the same name:
- * names, which are required, and types. The tables of a result say all that its schema says,
- * but for descriptions.
+ * names, which are required, and types. The tables of a result cover its structs.
  */
 #include <string.h>
 
@@ -104,151 +103,6 @@ static mt_addr resolved(const mt_json *doc, mt_addr schema)
                ? at
                : mt_json_member(doc, definitions,
                                 strrchr(mt_json_string(doc, reference), '/') + 1);
-}
-
-/* Is `list`, of a schema, these texts (and null, where that is allowed), in this order? */
-static bool are_texts(const mt_json *doc, mt_addr list, int n, const char *const *texts,
-                      bool nullable)
-{
-    mt_addr at = list == MT_NO_ADDR ? MT_NO_ADDR : mt_json_first(doc, list);
-    for (int i = 0; i < n; i++, at = mt_json_next(doc, at)) {
-        if (at == MT_NO_ADDR || mt_json_type_of(doc, at) != MT_JSON_STRING ||
-            strcmp(mt_json_string(doc, at), texts[i]) != 0) {
-            return false;
-        }
-    }
-    return nullable ? at != MT_NO_ADDR && mt_json_type_of(doc, at) == MT_JSON_NULL &&
-                          mt_json_next(doc, at) == MT_NO_ADDR
-                    : at == MT_NO_ADDR;
-}
-
-static bool has_type(const mt_json *doc, mt_addr schema, const char *type, bool nullable)
-{
-    const mt_addr is = mt_json_member(doc, schema, "type");
-    const char *const pair[] = {type, "null"};
-    if (is == MT_NO_ADDR || nullable) {
-        return is != MT_NO_ADDR && are_texts(doc, is, 2, pair, false);
-    }
-    return mt_json_type_of(doc, is) == MT_JSON_STRING &&
-           strcmp(mt_json_string(doc, is), type) == 0;
-}
-
-static void check_record(mt_test *t, const mt_json *doc, mt_addr schema,
-                         const mt_record *record);
-
-static void check_field(mt_test *t, const mt_json *doc, mt_addr schema, const mt_field *f)
-{
-    static const char *const number_or_text[] = {"number", "string", "null"};
-    const mt_addr least = mt_json_member(doc, schema, "minimum");
-    const mt_addr items = mt_json_member(doc, schema, "items");
-    const mt_addr choices = mt_json_member(doc, schema, "enum");
-    const mt_addr others = mt_json_member(doc, schema, "additionalProperties");
-    const mt_addr then = mt_json_member(doc, schema, "then");
-    switch (f->type) {
-    case MT_FIELD_TEXT:
-        CHECK(t, has_type(doc, schema, "string", f->nullable));
-        break;
-    case MT_FIELD_CHOICE:
-    case MT_FIELD_ENUM:
-        CHECK(t, are_texts(doc, choices, f->n_choices, f->choices, f->nullable));
-        break;
-    case MT_FIELD_NUMBER:
-        CHECK(t, has_type(doc, schema, "number", f->nullable));
-        break;
-    case MT_FIELD_VALUE:
-        CHECK(t, are_texts(doc, mt_json_member(doc, schema, "type"), 3, number_or_text, false));
-        break;
-    case MT_FIELD_COUNT:
-    case MT_FIELD_LONG:
-        CHECK(t, has_type(doc, schema, "integer", f->nullable));
-        CHECK(t, least != MT_NO_ADDR && mt_json_number(doc, least) == f->least);
-        break;
-    case MT_FIELD_FLAG:
-        CHECK(t, has_type(doc, schema, "boolean", false));
-        break;
-    case MT_FIELD_RECORD:
-        check_record(t, doc, resolved(doc, schema), f->record);
-        break;
-    case MT_FIELD_OPTION:
-        if (CHECK(t, then != MT_NO_ADDR)) {
-            check_record(t, doc, resolved(doc, then), f->record);
-        }
-        break;
-    case MT_FIELD_LIST:
-        if (CHECK(t, has_type(doc, schema, "array", f->nullable) && items != MT_NO_ADDR)) {
-            check_record(t, doc, resolved(doc, items), f->record);
-        }
-        break;
-    case MT_FIELD_TEXTS:
-    case MT_FIELD_NUMBERS:
-        if (!CHECK(t, has_type(doc, schema, "array", f->nullable) && items != MT_NO_ADDR)) {
-            break;
-        }
-        if (f->choices != NULL) {
-            CHECK(t, are_texts(doc, mt_json_member(doc, items, "enum"), f->n_choices,
-                               f->choices, false));
-        } else if (f->type == MT_FIELD_TEXTS) {
-            CHECK(t, has_type(doc, items, "string", false));
-        } else {
-            CHECK(t, has_type(doc, items, "number", true));
-        }
-        break;
-    case MT_FIELD_BY_VARIABLE:
-        CHECK(t, has_type(doc, schema, "object", f->nullable) && others != MT_NO_ADDR &&
-                     has_type(doc, others, "number", f->numbers_nullable));
-        break;
-    case MT_FIELD_TYPE_COUNT:
-        break;
-    }
-}
-
-/* All members of the record in its order, all required, no others; of the root "format" is one
- * more. */
-static void check_record(mt_test *t, const mt_json *doc, mt_addr schema,
-                         const mt_record *record)
-{
-    const mt_addr properties =
-        schema == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, schema, "properties");
-    if (!CHECK(t, properties != MT_NO_ADDR) || !CHECK(t, record->n <= MT_MAX_KEYS)) {
-        return;
-    }
-    const char *names[MT_MAX_KEYS + 1] = {NULL};
-    int n = 0;
-    if (schema == MT_JSON_ROOT) {
-        names[n++] = "format";
-    }
-    mt_addr at = mt_json_first(doc, properties);
-    at = schema == MT_JSON_ROOT ? mt_json_next(doc, at) : at;
-    for (int i = 0; i < record->n; i++) {
-        const mt_field *const f = &record->fields[i];
-        if (f->name == NULL) {
-            continue;
-        }
-        names[n++] = f->name;
-        mt_test_row(t, "member \"%s\"", f->name);
-        if (CHECK(t, at != MT_NO_ADDR) && CHECK_STR(t, mt_json_name(doc, at), f->name)) {
-            check_field(t, doc, at, f);
-            at = mt_json_next(doc, at);
-        }
-    }
-    mt_test_row(t, "the members around \"%s\"", names[n - 1]);
-    CHECK(t, at == MT_NO_ADDR);
-    CHECK(t, are_texts(doc, mt_json_member(doc, schema, "required"), n, names, false));
-    CHECK(t, mt_json_member(doc, schema, "additionalProperties") != MT_NO_ADDR);
-}
-
-static void schema__says_what_the_tables_of_a_result_say(mt_test *t)
-{
-    mt_file file = {0};
-    mt_json *doc = NULL;
-    REQUIRE(t, mt_file_read(MT_TEST_SOURCE_DIR "/schemas/result.schema.json", NULL,
-                            SCHEMA_LIMIT, &file, NULL) == MT_OK);
-    CHECK_INT(t, mt_json_parse(file.bytes, file.length, &doc, NULL), MT_OK);
-    if (doc != NULL) {
-        check_record(t, doc, MT_JSON_ROOT, &mt_result_record);
-    }
-    mt_json_delete(doc);
-    mt_file_free(&file);
 }
 
 /* Sizes as a struct has them: the next member begins where the one before ends, but for
@@ -358,5 +212,4 @@ MT_TEST_MAIN(MT_TEST(schema__has_the_members_of_the_model_reader),
              MT_TEST(schema__has_the_members_of_the_study_reader),
              MT_TEST(schema__has_the_members_of_the_aircraft_reader),
              MT_TEST(schema__has_the_members_of_the_profile_reader),
-             MT_TEST(schema__says_what_the_tables_of_a_result_say),
              MT_TEST(tables__cover_the_structs_of_a_result))

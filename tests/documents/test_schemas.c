@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The JSON Schemas of models, studies, profiles and catalogues of aircraft are written from the
- * tables that their readers go by: here their texts are made, and held against those of
- * schemas/. MT_SCHEMAS_UPDATE=1 writes them there (the target "schemas").
+ * tables that their readers go by, that of results from those of its writer and reader: here
+ * their texts are made, and held against those of schemas/. MT_SCHEMAS_UPDATE=1 writes them
+ * there (the target "schemas").
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,9 +16,10 @@
 #include "io/json.h"
 #include "model/read.h"
 #include "mt_test.h"
+#include "result/result.h"
 #include "study/read.h"
 
-enum { WIDTH = 145, SCHEMA_LIMIT = 1 << 20 };
+enum { WIDTH = 145, SCHEMA_LIMIT = 1 << 20, MOST_DEFINITIONS = 64 };
 
 /* A text as JSON. */
 static void add_string(mt_text *out, const char *s)
@@ -218,17 +220,22 @@ typedef struct document {
     bool goals;
 } document;
 
+static void add_head(mt_text *out, const char *room, const char *name)
+{
+    mt_text_addf(out,
+                 "{\"$schema\": \"http://json-schema.org/draft-07/schema#\", \"$comment\": "
+                 "\"Written from the tables of src/%s by the target schemas.\", \"title\": "
+                 "\"modetune %s\", ",
+                 room, name);
+}
+
 static void add_document(mt_test *t, mt_text *out, const document *d)
 {
     int n = 0;
     int n_types = 0;
     const mt_key_table *const *const tables = d->tables(&n);
     const mt_schema_type *const types = d->types == NULL ? NULL : d->types(&n_types);
-    mt_text_addf(out,
-                 "{\"$schema\": \"http://json-schema.org/draft-07/schema#\", \"$comment\": "
-                 "\"Written from the tables of src/%s by the target schemas.\", \"title\": "
-                 "\"modetune %s\", ",
-                 d->room, d->name);
+    add_head(out, d->room, d->name);
     add_object(t, out, tables[0]);
     mt_text_add(out, ", \"definitions\": {");
     for (int i = 0; i < n_types; i++) {
@@ -243,6 +250,212 @@ static void add_document(mt_test *t, mt_text *out, const document *d)
     }
     if (d->goals) {
         add_goal(out, n, tables);
+    }
+    mt_text_add(out, "}}");
+}
+
+/* Documents that are written from records: all members are there, and no others. */
+
+static void add_record(mt_test *t, mt_text *out, const mt_record *record);
+
+/* "type": the type, or null. */
+static void add_type_or_null(mt_text *out, const char *type, bool nullable)
+{
+    mt_text_addf(out, nullable ? "\"type\": [\"%s\", \"null\"]" : "\"type\": \"%s\"", type);
+}
+
+/* The members of a record, or the place where they stand. */
+static void add_record_or_reference(mt_test *t, mt_text *out, const mt_record *record)
+{
+    if (record->name != NULL) {
+        mt_text_addf(out, "\"$ref\": \"#/definitions/%s\"", record->name);
+        return;
+    }
+    if (CHECK(t, record->says != NULL)) {
+        add_text(out, "description", record->says);
+        mt_text_add(out, ", ");
+    }
+    add_record(t, out, record);
+}
+
+static void add_choices(mt_text *out, const mt_field *f)
+{
+    add_type_or_null(out, "string", f->nullable);
+    mt_text_add(out, ", \"enum\": [");
+    for (int i = 0; i < f->n_choices; i++) {
+        mt_text_add(out, i == 0 ? "" : ", ");
+        add_string(out, f->choices[i]);
+    }
+    mt_text_add(out, f->nullable ? ", null]" : "]");
+}
+
+/* A list's items, which rules of numbers are about. */
+static void add_items(mt_test *t, mt_text *out, const mt_field *f)
+{
+    add_type_or_null(out, "array", f->nullable);
+    if (f->type == MT_FIELD_LIST) {
+        mt_text_addf(out, "%s%s", f->rules == NULL ? "" : ", ",
+                     f->rules == NULL ? "" : f->rules);
+    }
+    mt_text_add(out, ", \"items\": {");
+    if (f->type == MT_FIELD_LIST) {
+        add_record_or_reference(t, out, f->record);
+    } else if (f->type == MT_FIELD_NUMBERS) {
+        mt_text_addf(out, "\"type\": [\"number\", \"null\"]%s%s", f->rules == NULL ? "" : ", ",
+                     f->rules == NULL ? "" : f->rules);
+    } else if (f->choices != NULL) {
+        add_choices(out, f);
+    } else {
+        mt_text_add(out, "\"type\": \"string\"");
+    }
+    mt_text_add(out, "}");
+}
+
+/* What a member may hold: of one value, of records, of several values. */
+static void add_field_type(mt_test *t, mt_text *out, const mt_field *f)
+{
+    switch (f->type) {
+    case MT_FIELD_FORMAT:
+        mt_text_addf(out, "\"type\": \"string\", \"enum\": [\"%s\"]", f->format);
+        break;
+    case MT_FIELD_TEXT:
+        add_type_or_null(out, "string", f->nullable);
+        break;
+    case MT_FIELD_CHOICE:
+    case MT_FIELD_ENUM:
+        add_choices(out, f);
+        break;
+    case MT_FIELD_NUMBER:
+        add_type_or_null(out, "number", f->nullable);
+        break;
+    case MT_FIELD_VALUE:
+        mt_text_add(out, "\"type\": [\"number\", \"string\", \"null\"]");
+        break;
+    case MT_FIELD_COUNT:
+    case MT_FIELD_LONG:
+        add_type_or_null(out, "integer", f->nullable);
+        mt_text_addf(out, ", \"minimum\": %d", f->least);
+        break;
+    case MT_FIELD_FLAG:
+        mt_text_add(out, "\"type\": \"boolean\"");
+        break;
+    case MT_FIELD_RECORD:
+        if (f->record->name != NULL) {
+            add_reference(out, f->record->name);
+        } else {
+            add_record(t, out, f->record);
+        }
+        break;
+    case MT_FIELD_OPTION:
+        mt_text_add(out, "\"if\": {\"type\": \"object\"}, \"then\": {");
+        add_record_or_reference(t, out, f->record);
+        mt_text_add(out, "}, \"else\": {\"type\": \"null\"}");
+        break;
+    case MT_FIELD_LIST:
+    case MT_FIELD_TEXTS:
+    case MT_FIELD_NUMBERS:
+        add_items(t, out, f);
+        break;
+    case MT_FIELD_BY_VARIABLE:
+        add_type_or_null(out, "object", f->nullable);
+        mt_text_add(out, ", \"additionalProperties\": {");
+        add_type_or_null(out, "number", f->numbers_nullable);
+        mt_text_add(out, "}");
+        break;
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+}
+
+static void add_field(mt_test *t, mt_text *out, const mt_field *f)
+{
+    const bool in_items = f->type == MT_FIELD_LIST || f->type == MT_FIELD_NUMBERS;
+    add_string(out, f->name);
+    mt_text_add(out, ": {");
+    if (f->says == NULL && f->type == MT_FIELD_RECORD && f->record->name != NULL) {
+        add_record_or_reference(t, out, f->record);
+    } else {
+        mt_test_row(t, "member \"%s\"", f->name);
+        if (CHECK(t, f->says != NULL)) {
+            add_text(out, "description", f->says);
+            mt_text_add(out, ", ");
+        }
+        add_field_type(t, out, f);
+        if (!in_items && f->rules != NULL) {
+            mt_text_addf(out, ", %s", f->rules);
+        }
+    }
+    mt_text_add(out, "}");
+}
+
+static void add_record(mt_test *t, mt_text *out, const mt_record *record)
+{
+    const char *names[MT_MAX_KEYS] = {NULL};
+    int n = 0;
+    REQUIRE(t, record->n <= MT_MAX_KEYS);
+    for (int i = 0; i < record->n; i++) {
+        if (record->fields[i].name != NULL) {
+            names[n++] = record->fields[i].name;
+        }
+    }
+    mt_text_add(out, "\"type\": \"object\", \"additionalProperties\": false, ");
+    add_texts(out, "required", n, names);
+    mt_text_add(out, ", \"properties\": {");
+    for (int i = 0, k = 0; i < record->n; i++) {
+        if (record->fields[i].name != NULL) {
+            mt_text_add(out, k++ == 0 ? "" : ", ");
+            add_field(t, out, &record->fields[i]);
+        }
+    }
+    mt_text_add(out, "}");
+}
+
+/* All records below one that are definitions, each once, in the order in which they are first
+ * met. */
+typedef struct definitions {
+    int n;
+    const mt_record *items[MOST_DEFINITIONS];
+} definitions;
+
+static void find_definitions(mt_test *t, const mt_record *record, definitions *found)
+{
+    for (int i = 0; i < record->n; i++) {
+        const mt_record *const r = record->fields[i].record;
+        bool known = r == NULL;
+        for (int k = 0; k < found->n && !known; k++) {
+            known = found->items[k] == r;
+            if (!known && r->name != NULL) {
+                mt_test_row(t, "definition \"%s\"", r->name);
+                CHECK(t, strcmp(found->items[k]->name, r->name) != 0);
+            }
+        }
+        if (!known && r->name != NULL && CHECK(t, found->n < MOST_DEFINITIONS)) {
+            found->items[found->n++] = r;
+        }
+        if (!known) {
+            find_definitions(t, r, found);
+        }
+    }
+}
+
+static void add_records(mt_test *t, mt_text *out, const char *room, const char *name,
+                        const mt_record *root)
+{
+    definitions found = {.n = 0};
+    add_head(out, room, name);
+    add_record_or_reference(t, out, root);
+    mt_text_add(out, ", \"definitions\": {");
+    find_definitions(t, root, &found);
+    for (int i = 0; i < found.n; i++) {
+        const mt_record *const r = found.items[i];
+        mt_text_addf(out, "%s\"%s\": {", i == 0 ? "" : ", ", r->name);
+        mt_test_row(t, "definition \"%s\"", r->name);
+        if (CHECK(t, r->says != NULL)) {
+            add_text(out, "description", r->says);
+            mt_text_add(out, ", ");
+        }
+        add_record(t, out, r);
+        mt_text_add(out, "}");
     }
     mt_text_add(out, "}}");
 }
@@ -301,20 +514,19 @@ static void add_lines(mt_text *out, const mt_json *doc, const char *source, mt_a
     mt_text_addf(out, "\n%*s%s", indent, "", type == MT_JSON_ARRAY ? "]" : "}");
 }
 
-static void check_document(mt_test *t, const document *d)
+/* Hold a schema, written in one line, against that of schemas/. */
+static void check_schema(mt_test *t, const char *name, const mt_text *compact)
 {
     char path[256];
-    mt_text compact = {.s = NULL};
     mt_text want = {.s = NULL};
     mt_file file = {0};
     mt_json *doc = NULL;
     mt_err err = {.text = ""};
-    (void)snprintf(path, sizeof path, MT_TEST_SOURCE_DIR "/schemas/%s.schema.json", d->name);
-    add_document(t, &compact, d);
-    REQUIRE(t, compact.s != NULL && !compact.failed);
-    CHECK_INT(t, mt_json_parse(compact.s, compact.length, &doc, &err), MT_OK);
+    (void)snprintf(path, sizeof path, MT_TEST_SOURCE_DIR "/schemas/%s.schema.json", name);
+    REQUIRE(t, compact->s != NULL && !compact->failed);
+    CHECK_INT(t, mt_json_parse(compact->s, compact->length, &doc, &err), MT_OK);
     if (CHECK(t, doc != NULL) && CHECK_STR(t, err.text, "")) {
-        add_lines(&want, doc, compact.s, MT_JSON_ROOT, 0, 0);
+        add_lines(&want, doc, compact->s, MT_JSON_ROOT, 0, 0);
         mt_text_add(&want, "\n");
     }
     if (getenv("MT_SCHEMAS_UPDATE") != NULL && want.s != NULL) {
@@ -333,7 +545,6 @@ static void check_document(mt_test *t, const document *d)
     mt_file_free(&file);
     mt_json_delete(doc);
     mt_text_free(&want);
-    mt_text_free(&compact);
 }
 
 static void schema__of_a_document_is_what_its_tables_say(mt_test *t)
@@ -344,8 +555,20 @@ static void schema__of_a_document_is_what_its_tables_say(mt_test *t)
         {"profile", "environment", mt_profile_key_tables, mt_profile_types, false},
         {"aircraft", "environment", mt_aircraft_key_tables, NULL, false}};
     for (int i = 0; i < MT_COUNT(documents); i++) {
-        check_document(t, &documents[i]);
+        mt_text compact = {.s = NULL};
+        add_document(t, &compact, &documents[i]);
+        check_schema(t, documents[i].name, &compact);
+        mt_text_free(&compact);
     }
 }
 
-MT_TEST_MAIN(MT_TEST(schema__of_a_document_is_what_its_tables_say))
+static void schema__of_a_result_is_what_its_records_say(mt_test *t)
+{
+    mt_text compact = {.s = NULL};
+    add_records(t, &compact, "result", "result", &mt_result_record);
+    check_schema(t, "result", &compact);
+    mt_text_free(&compact);
+}
+
+MT_TEST_MAIN(MT_TEST(schema__of_a_document_is_what_its_tables_say),
+             MT_TEST(schema__of_a_result_is_what_its_records_say))
