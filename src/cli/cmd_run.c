@@ -32,6 +32,7 @@
 #include "report/ruler.h"
 #include "report/summary.h"
 #include "result/result.h"
+#include "result/write.h"
 #include "study/study.h"
 
 /* The files of the index of several studies, the last one decisive. */
@@ -633,37 +634,71 @@ static int batch_begin(const mt_args *args, study_batch *out)
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
 }
 
-static void put_study(mt_json_writer *w, const mt_index_study *s)
-{
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "file", s->file);
-    mt_json_put_string(w, "folder", s->folder);
-    mt_json_put_string(w, "state", s->state);
-    mt_json_put_string(w, "name", s->name);
-    mt_json_put_string(w, "status", s->status);
-    mt_json_put_string(w, "grade", s->grade);
-    mt_json_put_number(w, "change", s->change);
-    if (s->exit_status < 0) {
-        mt_json_put_null(w, "exit_status");
-    } else {
-        mt_json_put_integer(w, "exit_status", s->exit_status);
-    }
-    mt_json_put_string(w, "message", s->message);
-    mt_json_put_string(w, "result_sha256", s->sha256);
-    mt_json_close(w);
-}
+/* index.json, as schemas/index.schema.json. */
+typedef struct index_document {
+    const char *version;
+    mt_index_study *studies;
+    int n;
+} index_document;
+
+static const char *const STATES[] = {"answered", "not answered", "not run"};
+static const char *const STATUSES[] = {
+#define STATUS_NAME(id, name) name,
+    MT_RESULT_STATUS_LIST(STATUS_NAME)
+#undef STATUS_NAME
+};
+
+#define THIS mt_index_study
+static const mt_field STUDY_FIELDS[] = {
+    MT_F_TEXT("file", file, "Name of the study's file, without folder.",
+              .rules = "\"minLength\": 1"),
+    MT_F_TEXT("folder", folder,
+              "Folder of its result, beside the index. What lies there is of this run where "
+              "the state is \"answered\".",
+              .rules = "\"minLength\": 1"),
+    MT_F_CHOICE("state", state, STATES,
+                "\"answered\": there is a result, whatever it says. \"not answered\": a file "
+                "is wrong, or something failed; the message says what. \"not run\": an "
+                "interrupt came before, or the study had not ended when this was written."),
+    MT_F_TEXT_OR_NULL("name", name, "Name that the study gives itself."),
+    MT_F_CHOICE_OR_NULL("status", status, STATUSES, "Status of the result."),
+    MT_F_TEXT_OR_NULL("grade", grade, "Grade of the first recommendation."),
+    MT_F_NUMBER_OR_NULL("change", change, "Size of its redesign."),
+    MT_F_COUNT_OR_NULL(
+        "exit_status", exit_status, 0,
+        "What running this study alone would have ended with; that of the whole run is "
+        "the worst of all.",
+        .rules = "\"enum\": [0, 1, 2, 3, 4, 130, null]"),
+    MT_F_TEXT_OR_NULL("message", message, "The first error, where there is no answer."),
+    MT_F_TEXT_OR_NULL(
+        "result_sha256", sha256,
+        "SHA-256 of result.json in the folder: another one there is of another run.",
+        .rules = "\"pattern\": \"^[0-9a-f]{64}$\""),
+};
+static const mt_record STUDY = MT_F_RECORD_OF(STUDY_FIELDS, "study", "One of the studies.");
+#undef THIS
+
+#define THIS index_document
+static const mt_field INDEX_FIELDS[] = {
+    MT_F_FORMAT("format", "modetune-index/1", "Kind and version of this file."),
+    MT_F_TEXT("modetune", version, "Version of the program."),
+    MT_F_LIST("studies", studies, n, mt_index_study, STUDY,
+              "The studies, in the order in which they were given.",
+              .rules = "\"minItems\": 2"),
+};
+const mt_record mt_index_record = MT_F_RECORD_OF(
+    INDEX_FIELDS, NULL,
+    "What became of several studies that were run together: `modetune run` writes it beside "
+    "the folders of their results. Every member is always there; null is what there is not.");
+#undef THIS
 
 static mt_status put_index(const study_batch *batch, mt_text *out, mt_err *err)
 {
+    const index_document index = {
+        .version = mt_version(), .studies = batch->studies, .n = batch->args->n_operands};
     mt_json_writer w = mt_json_writer_default(out);
     mt_json_open(&w, NULL, '{');
-    mt_json_put_string(&w, "format", "modetune-index/1");
-    mt_json_put_string(&w, "modetune", mt_version());
-    mt_json_open(&w, "studies", '[');
-    for (int i = 0; i < batch->args->n_operands; i++) {
-        put_study(&w, &batch->studies[i]);
-    }
-    mt_json_close(&w);
+    mt_record_put(&w, &mt_index_record, &index);
     mt_json_close(&w);
     return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
 }

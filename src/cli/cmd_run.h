@@ -4,7 +4,11 @@
 
 #include "cli/args.h"
 #include "io/write_json.h"
+#include "result/record.h"
 #include "result/result.h"
+
+/* The members of index.json. */
+extern const mt_record mt_index_record;
 
 /* mt_save for a result that was read; timing.json is kept where the one next to result_path
  * names the written result. */

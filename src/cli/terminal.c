@@ -21,6 +21,7 @@
 #include "base/run.h"
 #include "base/text.h"
 #include "cli/cli.h"
+#include "result/write.h"
 
 /* The only place that prints, looks at the environment, the clock or signals. */
 
@@ -616,52 +617,143 @@ static void words(const mt_progress_view *v, double now, char text[TEXT])
     }
 }
 
-static void put_mark(mt_json_writer *w, const char *time, const char *evaluations,
-                     const mt_progress_mark *m)
+/* A line of progress, as schemas/progress.schema.json. */
+typedef struct progress_line {
+    const char *file;
+    int number;
+    int files;
+    const char *state;
+    mt_progress_view view;
+    double best;
+    double left_s;
+    double first_cpu_s;
+    double best_cpu_s;
+    double proof_cpu_s;
+    double cpu_s;
+    double elapsed_s;
+    long first_evaluations; /* -1: there is none */
+    long best_evaluations;
+} progress_line;
+
+static const char *const STATES[] = {"running", "done", "ended"};
+static const char *const PHASES[] = {
+    "reading",      "baseline",    "search",    "recommendations", "spread",
+    "certificates", "relaxations", "published", "trade",           "modes"};
+
+#define THIS progress_line
+static const mt_field PROGRESS_FIELDS[] = {
+    MT_F_FORMAT("format", "modetune-progress/1", "Kind and version of this object."),
+    MT_F_TEXT("file", file, "The study or model, as the command line names it.",
+              .rules = "\"minLength\": 1"),
+    MT_F_COUNT("number", number, 1, "Which of the files that is, from 1."),
+    MT_F_COUNT("files", files, 1, "How many files the command was given."),
+    MT_F_CHOICE("state", state, STATES,
+                "\"running\"; or the last word of reading or answering: \"done\", or \"ended\" "
+                "where something was cut or failed."),
+    MT_F_CHOICE("phase", view.phase, PHASES,
+                "\"reading\"; of a study \"baseline\" (the original design, and what follows "
+                "from the question alone), then the lists of the result that are being made; "
+                "of a model \"modes\"."),
+    MT_F_LONG("step", view.step,
+              "Counts what has begun, phases and steps of them, from 1 for each file; never "
+              "the same again where a phase comes again. How many there will be is not known.",
+              .least = 1),
+    MT_F_TEXT_OR_NULL(
+        "unit", view.unit,
+        "What the step consists of: goals, first values (of starts), starts, ends of "
+        "searches, mode placements, combinations, lots of combinations, boxes of "
+        "combinations, changes of the question, designs, designs decided (by a proof), "
+        "points, points again (from their neighbours), equations, order of the bodies, "
+        "matrices of the bodies, iterations."),
+    MT_F_LONG("done", view.done, "How many of them are done."),
+    MT_F_LONG_OR_NULL("total", view.total, 1, "Of how many."),
+    MT_F_NUMBER_OR_NULL(
+        "share", view.share,
+        "Share of the step that is done; of a proof, the share of all designs that is "
+        "decided. Never less than before in the same step; 1 where the state is "
+        "\"done\".",
+        .rules = "\"minimum\": 0, \"maximum\": 1"),
+    MT_F_LONG("evaluations", view.evaluations, "Designs evaluated so far, of all steps."),
+    MT_F_LONG("modal_solutions", view.solutions,
+              "Modal solutions so far: of one configuration at one design, one position of a "
+              "drive or one corner of the tolerances each."),
+    MT_F_LONG("boxes", view.boxes, "Boxes of designs that proofs have looked at so far."),
+    MT_F_TEXT_OR_NULL("objective", view.what,
+                      "The first objective, once a design is known that meets all goals."),
+    MT_F_NUMBER_OR_NULL(
+        "best", best,
+        "Its best value so far. Where designs are judged again over tolerances or "
+        "positions of a drive, of those that were; not told of catalogues beside other "
+        "variables there, nor of a clearance."),
+    MT_F_FLAG("impossible", view.impossible,
+              "It is proven that no design meets all goals, by what little work shows before "
+              "the search: the nearest designs are sought, and changes of the question. "
+              "false says nothing."),
+    MT_F_NUMBER_OR_NULL(
+        "first_cpu_s", first_cpu_s,
+        "CPU time (as cpu_s) until the first design was known that meets all goals.",
+        .rules = "\"minimum\": 0"),
+    MT_F_LONG_OR_NULL("first_evaluations", first_evaluations, 0,
+                      "Designs evaluated until then."),
+    MT_F_NUMBER_OR_NULL("best_cpu_s", best_cpu_s,
+                        "CPU time until the best so far was known to 1e-6 of its value.",
+                        .rules = "\"minimum\": 0"),
+    MT_F_LONG_OR_NULL("best_evaluations", best_evaluations, 0, "Designs evaluated until then."),
+    MT_F_NUMBER_OR_NULL(
+        "proof_cpu_s", proof_cpu_s,
+        "CPU time until the last proof by branch and bound, of those that have settled "
+        "their question so far.",
+        .rules = "\"minimum\": 0"),
+    MT_F_NUMBER("cpu_s", cpu_s,
+                "CPU time of the process since reading or answering began, of all its threads.",
+                .rules = "\"minimum\": 0"),
+    MT_F_NUMBER("elapsed_s", elapsed_s, "Time since reading or answering began.",
+                .rules = "\"minimum\": 0"),
+    MT_F_NUMBER_OR_NULL(
+        "left_s", left_s,
+        "Time left of the step, if it goes on as it did, or of --time, if that is less.",
+        .rules = "\"minimum\": 0"),
+};
+const mt_record mt_progress_record = MT_F_RECORD_OF(
+    PROGRESS_FIELDS, NULL,
+    "How far a command is: one object a line on standard error with `--progress json`, as "
+    "every phase and step begins that lasts long enough to be seen, twice a second besides, "
+    "and once at the end of reading and of answering a file. Other lines of standard error "
+    "do not begin with a brace. Every member is always there; null is what there is not, or "
+    "what is not known.");
+#undef THIS
+
+/* The evaluations until a mark; -1: it has not been made. */
+static long evaluations_until(const mt_progress_mark *m)
 {
-    mt_json_put_number(w, time, m->cpu_s - it.begun_cpu_s);
-    if (isnan(m->cpu_s)) {
-        mt_json_put_null(w, evaluations);
-    } else {
-        mt_json_put_integer(w, evaluations, m->evaluations);
-    }
+    return isnan(m->cpu_s) ? -1 : m->evaluations;
 }
 
-/* Write progress as in schemas/progress.schema.json. Parts without memory are left out. */
+/* Parts without memory are left out. */
 static void put_json(const mt_progress_view *v, const char *state, double now)
 {
     mt_text t = {.s = NULL};
     mt_json_writer w = mt_json_writer_default(&t);
     const double step = step_left(v, now);
     const double limit = limit_left(now);
+    const progress_line line = {
+        .file = it.args->operands[it.operand],
+        .number = it.operand + 1,
+        .files = it.args->n_operands,
+        .state = state,
+        .view = *v,
+        .best = v->what == NULL ? nan("") : v->best,
+        .first_cpu_s = v->first.cpu_s - it.begun_cpu_s,
+        .first_evaluations = evaluations_until(&v->first),
+        .best_cpu_s = v->best_at.cpu_s - it.begun_cpu_s,
+        .best_evaluations = evaluations_until(&v->best_at),
+        .proof_cpu_s = v->proof.cpu_s - it.begun_cpu_s,
+        .cpu_s = terminal_cpu_seconds() - it.begun_cpu_s,
+        .elapsed_s = now - it.begun_s,
+        .left_s = isfinite(step) ? fmin(step, limit) : limit,
+    };
     mt_json_open_flat(&w, NULL, '{');
-    mt_json_put_string(&w, "format", "modetune-progress/1");
-    mt_json_put_string(&w, "file", it.args->operands[it.operand]);
-    mt_json_put_integer(&w, "number", it.operand + 1);
-    mt_json_put_integer(&w, "files", it.args->n_operands);
-    mt_json_put_string(&w, "state", state);
-    mt_json_put_string(&w, "phase", v->phase);
-    mt_json_put_integer(&w, "step", v->step);
-    mt_json_put_string(&w, "unit", v->unit);
-    mt_json_put_integer(&w, "done", v->done);
-    if (v->total > 0) {
-        mt_json_put_integer(&w, "total", v->total);
-    } else {
-        mt_json_put_null(&w, "total");
-    }
-    mt_json_put_number(&w, "share", v->share);
-    mt_json_put_integer(&w, "evaluations", v->evaluations);
-    mt_json_put_integer(&w, "modal_solutions", v->solutions);
-    mt_json_put_integer(&w, "boxes", v->boxes);
-    mt_json_put_string(&w, "objective", v->what);
-    mt_json_put_number(&w, "best", v->what == NULL ? nan("") : v->best);
-    mt_json_put_bool(&w, "impossible", v->impossible);
-    put_mark(&w, "first_cpu_s", "first_evaluations", &v->first);
-    put_mark(&w, "best_cpu_s", "best_evaluations", &v->best_at);
-    mt_json_put_number(&w, "proof_cpu_s", v->proof.cpu_s - it.begun_cpu_s);
-    mt_json_put_number(&w, "cpu_s", terminal_cpu_seconds() - it.begun_cpu_s);
-    mt_json_put_number(&w, "elapsed_s", now - it.begun_s);
-    mt_json_put_number(&w, "left_s", isfinite(step) ? fmin(step, limit) : limit);
+    mt_record_put(&w, &mt_progress_record, &line);
     mt_json_close(&w);
     if (mt_json_done(&w)) {
         mt_terminal_write(t.s, t.length);

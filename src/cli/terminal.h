@@ -7,6 +7,10 @@
 #include "base/run.h"
 #include "base/text.h"
 #include "cli/args.h"
+#include "result/record.h"
+
+/* The members of a line of progress. */
+extern const mt_record mt_progress_record;
 
 /* Exit status of the program. */
 enum {

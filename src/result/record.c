@@ -15,6 +15,8 @@ void mt_record_clear(const mt_record *record, void *item)
             *(double *)at = nan("");
         } else if (f->type == MT_FIELD_COUNT && f->nullable) {
             *(int *)at = f->least - 1;
+        } else if (f->type == MT_FIELD_LONG && f->nullable) {
+            *(long *)at = f->least - 1;
         } else if (f->type == MT_FIELD_RECORD) {
             mt_record_clear(f->record, at);
         }

@@ -23,7 +23,7 @@ typedef enum mt_field_type {
     MT_FIELD_NUMBER, /* double; null is NaN */
     MT_FIELD_VALUE,  /* double, or const char * (at `other`) where that is not NULL */
     MT_FIELD_COUNT,  /* int, `least` or more; null is what is less */
-    MT_FIELD_LONG,   /* long, 0 or more */
+    MT_FIELD_LONG,   /* long, 0 or more; the same */
     MT_FIELD_FLAG,   /* bool */
     MT_FIELD_RECORD, /* a struct */
     MT_FIELD_OPTION, /* a pointer to a struct; null is NULL */
@@ -126,6 +126,10 @@ struct mt_record {
 #define MT_F_LONG(json, m, ...)                                              \
     {                                                                        \
         MT_F_FIELD(json, MT_FIELD_LONG, false, long, m), .says = __VA_ARGS__ \
+    }
+#define MT_F_LONG_OR_NULL(json, m, from, ...)                                                \
+    {                                                                                        \
+        MT_F_FIELD(json, MT_FIELD_LONG, true, long, m), .least = (from), .says = __VA_ARGS__ \
     }
 #define MT_F_FLAG(json, m, ...)                                              \
     {                                                                        \

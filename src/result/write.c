@@ -103,6 +103,10 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         mt_json_put_integer(w, f->name, *(const int *)at);
         break;
     case MT_FIELD_LONG:
+        if (f->nullable && *(const long *)at < f->least) {
+            mt_json_put_null(w, f->name);
+            break;
+        }
         mt_json_put_integer(w, f->name, *(const long *)at);
         break;
     case MT_FIELD_FLAG:
@@ -159,6 +163,11 @@ static void put_record(mt_json_writer *w, const char *name, const mt_record *rec
     mt_json_open(w, name, '{');
     put_members(w, NULL, record, item, variables);
     mt_json_close(w);
+}
+
+void mt_record_put(mt_json_writer *w, const mt_record *record, const void *item)
+{
+    put_members(w, NULL, record, item, NULL);
 }
 
 void mt_json_put_warnings(mt_json_writer *w, const char *name, const mt_warning_list *list,

@@ -10,6 +10,8 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "cli/cmd_run.h"
+#include "cli/terminal.h"
 #include "environment/aircraft.h"
 #include "environment/vibration.h"
 #include "io/file.h"
@@ -444,20 +446,19 @@ static void add_records(mt_test *t, mt_text *out, const char *room, const char *
     definitions found = {.n = 0};
     add_head(out, room, name);
     add_record_or_reference(t, out, root);
-    mt_text_add(out, ", \"definitions\": {");
     find_definitions(t, root, &found);
     for (int i = 0; i < found.n; i++) {
         const mt_record *const r = found.items[i];
-        mt_text_addf(out, "%s\"%s\": {", i == 0 ? "" : ", ", r->name);
+        mt_text_addf(out, "%s\"%s\": {", i == 0 ? ", \"definitions\": {" : ", ", r->name);
         mt_test_row(t, "definition \"%s\"", r->name);
         if (CHECK(t, r->says != NULL)) {
             add_text(out, "description", r->says);
             mt_text_add(out, ", ");
         }
         add_record(t, out, r);
-        mt_text_add(out, "}");
+        mt_text_add(out, i + 1 < found.n ? "}" : "}}");
     }
-    mt_text_add(out, "}}");
+    mt_text_add(out, "}");
 }
 
 /* A value in one line, as it stands in the source. */
@@ -562,13 +563,22 @@ static void schema__of_a_document_is_what_its_tables_say(mt_test *t)
     }
 }
 
-static void schema__of_a_result_is_what_its_records_say(mt_test *t)
+static void schema__of_what_is_written_is_what_its_records_say(mt_test *t)
 {
-    mt_text compact = {.s = NULL};
-    add_records(t, &compact, "result", "result", &mt_result_record);
-    check_schema(t, "result", &compact);
-    mt_text_free(&compact);
+    static const struct {
+        const char *name;
+        const char *room;
+        const mt_record *root;
+    } documents[] = {{"result", "result", &mt_result_record},
+                     {"index", "cli", &mt_index_record},
+                     {"progress", "cli", &mt_progress_record}};
+    for (int i = 0; i < MT_COUNT(documents); i++) {
+        mt_text compact = {.s = NULL};
+        add_records(t, &compact, documents[i].room, documents[i].name, documents[i].root);
+        check_schema(t, documents[i].name, &compact);
+        mt_text_free(&compact);
+    }
 }
 
 MT_TEST_MAIN(MT_TEST(schema__of_a_document_is_what_its_tables_say),
-             MT_TEST(schema__of_a_result_is_what_its_records_say))
+             MT_TEST(schema__of_what_is_written_is_what_its_records_say))
