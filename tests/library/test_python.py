@@ -537,7 +537,8 @@ class Declarations(unittest.TestCase):
         self.assertGreater(len(files), 3)
         for path in files:
             lines = path.read_text(encoding="utf-8").split("\n")
-            self.assertLess(len(lines), 600, path)
+            if path.name != "types.py":  # which is written from the schemas
+                self.assertLess(len(lines), 600, path)
             self.assertLessEqual(max(map(len, lines)), 96, path)
             self.assertIn("# SPDX-License-Identifier: GPL-3.0-or-later", lines[:2], path)
             compile("\n".join(lines), str(path), "exec")

@@ -50,7 +50,7 @@ def contents(library: Path, number: str, tag: str) -> dict[str, bytes]:
     """{name in the wheel: content}, RECORD last."""
     info = f"modetune-{number}.dist-info"
     files = {f"modetune/{path.name}": path.read_bytes()
-             for path in sorted((HERE / "modetune").glob("*.py"))}
+             for path in sorted((HERE / "modetune").glob("*.py*")) if path.is_file()}
     files["modetune/libmodetune.so"] = library.read_bytes()
     files[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     files[f"{info}/METADATA"] = metadata(number).encode()

@@ -22,7 +22,7 @@ import warnings
 from contextlib import contextmanager
 from ctypes import byref, c_char_p, c_double, c_int, c_void_p, sizeof
 from typing import (
-    Any, Callable, ContextManager, Iterator, Mapping, Optional, Sequence, Union,
+    TYPE_CHECKING, Any, Callable, ContextManager, Iterator, Mapping, Optional, Sequence, Union,
 )
 
 from ._library import (
@@ -31,6 +31,9 @@ from ._library import (
 )
 from ._page import Report
 from ._progress import Progress, Silent, teller
+
+if TYPE_CHECKING:
+    from .types import Result
 
 __all__ = ["Diagnostic", "Doubt", "Error", "Report", "modes", "report", "solve"]
 __version__ = version
@@ -161,7 +164,7 @@ def _study(path: bytes, given: dict[str, str], sets: list[str],
 def solve(study: Union[PathLike, Mapping[str, Any]], *,
           set: Optional[Mapping[str, Value]] = None, seed: Optional[int] = None,  # noqa: A002
           files: Optional[Mapping[str, Union[str, Mapping[str, Any]]]] = None,
-          workers: Optional[int] = None, progress: Progress = None) -> dict[str, Any]:
+          workers: Optional[int] = None, progress: Progress = None) -> Result:
     """Answer a study, and give its result as result.json has it.
 
     study     path of a study, or what one holds; then the files that it names are found from

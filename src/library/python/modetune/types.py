@@ -1,0 +1,2021 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Written from the schemas by the target schemas (schemas/python_types.py): do not edit.
+"""Types of what the files hold, for editors and checkers of types: Study, Model, Result, ...
+
+    from modetune.types import Study
+    study: Study = {"format": "modetune-study/1", "model": "stick.json", "goals": []}
+
+What each member is stands in schemas/README.md. Numbers of models and studies may be texts,
+expressions of parameters.
+"""
+from typing import Dict, List, Literal, Optional, TypedDict, Union
+
+__all__ = [
+    "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
+]
+
+
+class _ModelParameterAlways(TypedDict):
+    value: "ModelNumber"
+
+
+class ModelParameter(_ModelParameterAlways, total=False):
+    """A parameter with its documentation."""
+
+    unit: Literal[
+        "1", "m", "m^2", "m^3", "m^4", "kg", "kg/m", "kg/m^2", "kg/m^3", "kg m", "kg m^2", "s",
+        "1/s", "Hz", "rad", "rad/s", "m/s", "m/s^2", "N", "N/m", "N/m^2", "Pa", "N m", "N m^2",
+        "N m/rad", "N s/m", "N m s/rad", "m/rad", "rad/m", "J", "W", "mm", "cm", "in", "ft",
+        "deg", "rpm", "mg", "g", "t", "oz", "lb", "slug", "lbf s^2/in", "g/mm", "g/m", "kg/mm",
+        "lb/in", "lb/ft", "g/m^2", "g/cm^2", "kg/mm^2", "lb/ft^2", "g/cm^3", "kg/dm^3", "t/m^3",
+        "g/mm^3", "kg/cm^3", "kg/mm^3", "t/mm^3", "lb/in^3", "lb/ft^3", "slug/ft^3", "g mm",
+        "g cm", "g m", "kg mm", "kg cm", "lb in", "lb ft", "g mm^2", "g cm^2", "kg mm^2",
+        "kg cm^2", "t mm^2", "t m^2", "lb in^2", "lb ft^2", "slug ft^2", "lbf in s^2", "um",
+        "km", "mm^2", "cm^2", "in^2", "ft^2", "mm^3", "cm^3", "in^3", "ft^3", "mm^4", "cm^4",
+        "in^4", "ft^4", "ms", "min", "kHz", "mrad", "mm/s", "in/s", "ft/s", "km/h", "mm/s^2",
+        "in/s^2", "ft/s^2", "mN", "daN", "kN", "MN", "lbf", "kip", "kgf", "N/cm", "N/mm",
+        "N/um", "kN/m", "kN/mm", "MN/m", "lbf/in", "lbf/ft", "kip/in", "kip/ft", "kPa", "MPa",
+        "GPa", "bar", "psi", "ksi", "Msi", "N/mm^2", "kN/mm^2", "kN/m^2", "lbf/in^2",
+        "lbf/ft^2", "N mm", "N cm", "kN m", "kN mm", "lbf in", "lbf ft", "N mm^2", "kN m^2",
+        "kN mm^2", "N mm/rad", "N cm/rad", "kN m/rad", "kN mm/rad", "MN m/rad", "N m/mrad",
+        "lbf in/rad", "lbf ft/rad", "N m/deg", "N mm/deg", "kN m/deg", "lbf in/deg",
+        "lbf ft/deg", "N s/mm", "kN s/m", "kN s/mm", "lbf s/in", "lbf s/ft", "N mm s/rad",
+        "kN m s/rad", "lbf in s/rad", "lbf ft s/rad", "N m s/deg", "N mm s/deg", "deg/s",
+        "mm/rad", "cm/rad", "in/rad", "mm/deg", "rad/mm", "deg/m", "deg/mm", "mJ", "kJ", "kW",
+        "%"
+    ]
+    description: str
+    source: str
+    origin: "ModelOrigin"
+
+
+class _ModelBodyAlways(TypedDict):
+    name: str
+    centre: "ModelPosition"
+
+
+_ModelBodySometimes = TypedDict("_ModelBodySometimes", {
+    "mass_kg": "ModelNumber",
+    "inertia_kg_m2": Union["ModelNumber", List["ModelNumber"]],
+    "in": List[str],
+    "description": str,
+    "source": str,
+    "origin": "ModelOrigin",
+}, total=False)
+
+
+class ModelBody(_ModelBodyAlways, _ModelBodySometimes):
+    """A rigid body, or without inertia_kg_m2 a point mass."""
+
+
+_ModelLinkAlways = TypedDict("_ModelLinkAlways", {
+    "name": str,
+    "from": "ModelPosition",
+    "to": "ModelPosition",
+    "elements": int,
+})
+
+
+_ModelLinkSometimes = TypedDict("_ModelLinkSometimes", {
+    "kind": Literal["rigid_elements", "beam"],
+    "mass_kg": "ModelNumber",
+    "density_kg_per_m3": "ModelNumber",
+    "youngs_modulus_pa": "ModelNumber",
+    "shear_modulus_pa": "ModelNumber",
+    "shear": "ModelShear",
+    "rotary_inertia": bool,
+    "section": "ModelSection",
+    "stiffness_n_m_per_rad": Union["ModelNumber", List["ModelNumber"]],
+    "element_length_m": Union["ModelNumber", List["ModelNumber"]],
+    "element_mass_kg": Union["ModelNumber", List["ModelNumber"]],
+    "element_inertia_kg_m2": Union["ModelNumber", List["ModelNumber"]],
+    "hinge_axis": "ModelVector",
+    "radius_of_gyration_m": "ModelNumber",
+    "loss_factor": "ModelNumber",
+    "in": List[str],
+    "description": str,
+    "source": str,
+}, total=False)
+
+
+class ModelLink(_ModelLinkAlways, _ModelLinkSometimes):
+    """A flexible link from one point to another: rigid elements with hinges and torsional
+    springs, or beam elements, Euler-Bernoulli's or Timoshenko's.
+    """
+
+
+class _ModelSectionAlways(TypedDict):
+    shape: Literal["rectangle", "circle", "tube", "general"]
+
+
+class ModelSection(_ModelSectionAlways, total=False):
+    """Cross-section of a link."""
+
+    width_m: "ModelNumber"
+    height_m: "ModelNumber"
+    diameter_m: "ModelNumber"
+    outer_diameter_m: "ModelNumber"
+    inner_diameter_m: "ModelNumber"
+    area_m2: "ModelNumber"
+    second_moment_m4: "ModelNumber"
+    second_moment_other_m4: "ModelNumber"
+    torsion_constant_m4: "ModelNumber"
+    description: str
+    source: str
+
+
+class _ModelShearAlways(TypedDict):
+    coefficient: "ModelNumber"
+
+
+class ModelShear(_ModelShearAlways, total=False):
+    """Beams: Timoshenko's elements, which deform in shear. The shear modulus is the link's, or
+    follows from Poisson's ratio.
+    """
+
+    coefficient_other: "ModelNumber"
+    poissons_ratio: "ModelNumber"
+    description: str
+    source: str
+
+
+class _ModelJointAlways(TypedDict):
+    name: str
+    type: Literal[
+        "fixed", "revolute", "prismatic", "pin-in-slot", "distance", "cylindrical", "spherical",
+        "universal", "planar", "point-on-line", "point-on-plane", "orientation", "gear", "rack"
+    ]
+
+
+_ModelJointSometimes = TypedDict("_ModelJointSometimes", {
+    "bodies": List[str],
+    "at": "ModelAt",
+    "axis": "ModelVector",
+    "axis_b": "ModelVector",
+    "length_m": "ModelNumber",
+    "mass_kg": "ModelNumber",
+    "joints": List[str],
+    "ratio": "ModelNumber",
+    "ratio_m_per_rad": "ModelNumber",
+    "in": List[str],
+    "description": str,
+    "source": str,
+}, total=False)
+
+
+class ModelJoint(_ModelJointAlways, _ModelJointSometimes):
+    """A joint between two bodies."""
+
+
+class _ModelSpringAlways(TypedDict):
+    name: str
+    type: Literal["torsion", "axial", "bar", "bushing"]
+
+
+_ModelSpringSometimes = TypedDict("_ModelSpringSometimes", {
+    "bodies": List[str],
+    "joint": str,
+    "at": "ModelAt",
+    "stiffness_n_per_m": Union["ModelNumber", List["ModelNumber"]],
+    "stiffness_n_m_per_rad": Union["ModelNumber", List["ModelNumber"]],
+    "in": List[str],
+    "description": str,
+    "source": str,
+    "free_length_m": "ModelNumber",
+    "free_angle_rad": "ModelNumber",
+    "preload_n": "ModelNumber",
+    "preload_n_m": "ModelNumber",
+    "youngs_modulus_pa": "ModelNumber",
+    "area_m2": "ModelNumber",
+    "density_kg_per_m3": "ModelNumber",
+    "loss_factor": "ModelNumber",
+    "stiffness_matrix": List[List["ModelNumber"]],
+}, total=False)
+
+
+class ModelSpring(_ModelSpringAlways, _ModelSpringSometimes):
+    """A spring."""
+
+
+class _ModelDamperAlways(TypedDict):
+    name: str
+    type: Literal["torsion", "axial", "bushing"]
+
+
+_ModelDamperSometimes = TypedDict("_ModelDamperSometimes", {
+    "bodies": List[str],
+    "joint": str,
+    "at": "ModelAt",
+    "damping_n_s_per_m": Union["ModelNumber", List["ModelNumber"]],
+    "damping_n_m_s_per_rad": Union["ModelNumber", List["ModelNumber"]],
+    "in": List[str],
+    "description": str,
+    "source": str,
+}, total=False)
+
+
+class ModelDamper(_ModelDamperAlways, _ModelDamperSometimes):
+    """A viscous damper."""
+
+
+class _ModelSensorAlways(TypedDict):
+    name: str
+    on: str
+
+
+class ModelSensor(_ModelSensorAlways, total=False):
+    """A sensor."""
+
+    at: "ModelPosition"
+    fraction: "ModelNumber"
+    directions: List[Literal["x", "y", "z", "rx", "ry", "rz", "r"]]
+    description: str
+    source: str
+
+
+class _ModelModeAlways(TypedDict):
+    configuration: str
+    index: int
+
+
+class ModelMode(_ModelModeAlways, total=False):
+    """A vibration mode of the original design."""
+
+    description: str
+    source: str
+
+
+class ModelConfiguration(TypedDict, total=False):
+    """A state of the mechanism."""
+
+    like: str
+    parameters: Dict[str, "ModelNumber"]
+    gravity_m_per_s2: "ModelVector"
+    drive: "ModelDrive"
+    damping: "ModelDamping"
+    description: str
+    source: str
+
+
+class _ModelDriveAlways(TypedDict):
+    joint: str
+
+
+class ModelDrive(_ModelDriveAlways, total=False):
+    """A joint that is put to a position."""
+
+    position_rad: "ModelNumber"
+    position_m: "ModelNumber"
+    hold: Union[Literal["lock"], "ModelHold"]
+    description: str
+    source: str
+
+
+class _ModelHoldAlways(TypedDict):
+    trim: str
+
+
+class ModelHold(_ModelHoldAlways, total=False):
+    """A spring holds the position."""
+
+    description: str
+    source: str
+
+
+class _ModelLoadAlways(TypedDict):
+    name: str
+
+
+_ModelLoadSometimes = TypedDict("_ModelLoadSometimes", {
+    "on": str,
+    "joint": str,
+    "at": "ModelPosition",
+    "force_n": Union["ModelNumber", "ModelVector"],
+    "moment_n_m": Union["ModelNumber", List["ModelNumber"]],
+    "in": List[str],
+    "description": str,
+    "source": str,
+}, total=False)
+
+
+class ModelLoad(_ModelLoadAlways, _ModelLoadSometimes):
+    """A dead load on a body, or on a joint."""
+
+
+class ModelUnits(TypedDict, total=False):
+    """Units of numbers whose member names none. Members that end in a unit (_m, _rad, _hz) and
+    parameters that have one stay in that. Expressions (strings) are always in SI units:
+    "150*mm", "10*deg" say otherwise.
+    """
+
+    length: Literal["m", "mm", "cm", "in", "ft"]
+    angle: Literal["rad", "deg"]
+    speed: Literal["Hz", "rpm"]
+
+
+class ModelDamping(TypedDict, total=False):
+    """Damping besides dampers and loss factors: C = mass_per_s M + stiffness_s K + M Phi diag(2
+    ratio_j omega_j) Phi^T M. That of a configuration takes the place of all of the one that it
+    would inherit.
+    """
+
+    ratio: "ModelNumber"
+    ratios: List["ModelNumber"]
+    modes: Dict[str, "ModelNumber"]
+    mass_per_s: "ModelNumber"
+    stiffness_s: "ModelNumber"
+    description: str
+    source: str
+
+
+class _ModelAlways(TypedDict):
+    format: Literal["modetune-model/1"]
+    dimension: Literal[2, 3]
+
+
+_ModelSometimes = TypedDict("_ModelSometimes", {
+    "$schema": str,
+    "name": str,
+    "description": str,
+    "source": str,
+    "accepted": List[
+        Literal["angle", "band", "bounds", "bushing", "damping", "density", "drive", "dropped",
+        "frequency", "gap", "gravity", "inertia", "level", "margin", "mass", "modulus",
+        "no_effect", "off", "reference", "section", "size", "speed", "speed_range", "spread",
+        "spring", "target", "tolerance", "unit", "weight"]
+    ],
+    "units": "ModelUnits",
+    "gravity_m_per_s2": "ModelVector",
+    "parameters": Dict[str, Union["ModelNumber", "ModelParameter"]],
+    "points": Dict[str, "ModelVector"],
+    "bodies": List["ModelBody"],
+    "links": List["ModelLink"],
+    "joints": List["ModelJoint"],
+    "springs": List["ModelSpring"],
+    "dampers": List["ModelDamper"],
+    "loads": List["ModelLoad"],
+    "damping": "ModelDamping",
+    "sensors": List["ModelSensor"],
+    "modes": Dict[str, "ModelMode"],
+    "configurations": Dict[str, "ModelConfiguration"],
+}, total=False)
+
+
+class Model(_ModelAlways, _ModelSometimes):
+    """One mechanism: bodies, flexible links, joints and springs in their reference position,
+    and its configurations. SI units, global coordinates.
+    """
+
+
+class StudyUnits(TypedDict, total=False):
+    """Units of numbers that are values of parameters (bounds, catalogues, scales, values of a
+    trade study, published values) and that people are shown them in. Absent: of each
+    parameter's own unit in the model. Members that end in a unit stay in that. Expressions
+    (strings) are always in SI units: "150*mm", "10*deg" say otherwise.
+    """
+
+    length: Literal["m", "mm", "cm", "in", "ft"]
+    angle: Literal["rad", "deg"]
+    speed: Literal["Hz", "rpm"]
+
+
+class StudySearch(TypedDict, total=False):
+    """How the search runs."""
+
+    seed: int
+    starts: int
+    max_evaluations: int
+    max_modal_solutions: int
+    proof_s: "StudyNumber"
+    description: str
+    source: str
+
+
+class _StudySpreadAlways(TypedDict):
+    factor: "StudyNumber"
+
+
+class StudySpread(_StudySpreadAlways, total=False):
+    """How far the best design of a misfit moves under other weights: each weighted goal's
+    weight is multiplied and divided by the factor in turn and the misfit minimised again. It is
+    a sensitivity to the weights, not an uncertainty: repeated noisy tests may scatter many
+    times more.
+    """
+
+    description: str
+    source: str
+
+
+class _StudyVariableAlways(TypedDict):
+    parameter: str
+
+
+class StudyVariable(_StudyVariableAlways, total=False):
+    """A parameter that the study may change: within two bounds, or to an entry of a catalogue.
+    """
+
+    lower: "StudyNumber"
+    upper: "StudyNumber"
+    catalogue: Union[List["StudyNumber"], "StudyCatalogue"]
+    weight: "StudyNumber"
+    scale: "StudyNumber"
+    tolerance_percent: "StudyNumber"
+    description: str
+    source: str
+
+
+class StudyReference(TypedDict, total=False):
+    """Modes to compare with: those of a configuration of another model, or measured ones."""
+
+    model: str
+    modes: List["StudyMeasuredMode"]
+    configuration: str
+    description: str
+    source: str
+
+
+class StudyMeasuredMode(TypedDict, total=False):
+    """A measured mode: its frequency, its shape at sensors, or both."""
+
+    frequency_hz: "StudyNumber"
+    shape: Dict[str, "StudyNumber"]
+    description: str
+    source: str
+
+
+class _StudyMeasurementAlways(TypedDict):
+    file: str
+
+
+class StudyMeasurement(_StudyMeasurementAlways, total=False):
+    """A file of measured frequency responses: a table (CSV), or a universal file with datasets
+    58.
+    """
+
+    dataset: int
+    response_node: str
+    reference_node: str
+    factor: "StudyNumber"
+    description: str
+    source: str
+
+
+class _StudyRotorAlways(TypedDict):
+    harmonics: List[str]
+
+
+class StudyRotor(_StudyRotorAlways, total=False):
+    """A rotor whose harmonics are forbidden: an aircraft of the catalogue, or a speed."""
+
+    aircraft: str
+    speed_hz: "StudyNumber"
+    speed_rpm: "StudyNumber"
+    blades: int
+    tail: "StudyTailRotor"
+    name: str
+    speed_range: "StudyPair"
+    margin_percent: "StudyNumber"
+    description: str
+    source: str
+
+
+class StudyTailRotor(TypedDict, total=False):
+    """The tail rotor."""
+
+    speed_hz: "StudyNumber"
+    speed_rpm: "StudyNumber"
+    blades: int
+    description: str
+    source: str
+
+
+class StudyMachine(TypedDict, total=False):
+    """A machine (engine, pump, gearbox) whose orders are forbidden over its range of speeds:
+    events per turn of its shaft, and gear meshes.
+    """
+
+    speed_hz: "StudyNumber"
+    speed_range_hz: "StudyPair"
+    speed_range: "StudyPair"
+    name: str
+    orders: List[str]
+    gears: List["StudyGear"]
+    margin_percent: "StudyNumber"
+    description: str
+    source: str
+
+
+class _StudyGearAlways(TypedDict):
+    teeth: int
+
+
+class StudyGear(_StudyGearAlways, total=False):
+    """A gear of a machine: it meshes teeth times ratio times per turn of the machine."""
+
+    ratio: "StudyNumber"
+    orders: List[str]
+    sidebands: int
+    name: str
+    description: str
+    source: str
+
+
+class _StudyCatalogueAlways(TypedDict):
+    lower: "StudyNumber"
+    upper: "StudyNumber"
+
+
+class StudyCatalogue(_StudyCatalogueAlways, total=False):
+    """The values of an E series of IEC 60063, or steps from the lower bound, between two bounds
+    (included); at most 10000.
+    """
+
+    series: Literal["E3", "E6", "E12", "E24", "E48", "E96", "E192"]
+    step: "StudyNumber"
+    description: str
+    source: str
+
+
+class _StudyTradeAlways(TypedDict):
+    vary: List["StudyVary"]
+
+
+class StudyTrade(_StudyTradeAlways, total=False):
+    """A trade study: one or two quantities take each of their values, and every such study is
+    answered by its best design.
+    """
+
+    objectives: List[Literal["change", "mass", "misfit", "clearance", "vibration"]]
+    description: str
+    source: str
+
+
+class _StudyVaryAlways(TypedDict):
+    values: Union[List["StudyNumber"], "StudySpan"]
+
+
+class StudyVary(_StudyVaryAlways, total=False):
+    """A quantity that varies: a bound of a variable, a number of a goal, or a parameter."""
+
+    variable: str
+    goal: int
+    parameter: str
+    bound: Literal["lower", "upper"]
+    member: Literal[
+        "target_hz", "at_least_hz", "at_most_hz", "at_least", "target", "at_most", "equals",
+        "margin_percent"
+    ]
+    description: str
+    source: str
+
+
+_StudySpanAlways = TypedDict("_StudySpanAlways", {
+    "from": "StudyNumber",
+    "to": "StudyNumber",
+    "count": int,
+})
+
+
+class StudySpan(_StudySpanAlways):
+    """Values at equal distances."""
+
+
+class StudyObjective(TypedDict, total=False):
+    """What decides between designs that meet the goals."""
+
+    minimise: str
+    maximise: Literal["clearance"]
+    of: List[str]
+    description: str
+    source: str
+
+
+class _StudyResponseAlways(TypedDict):
+    input: str
+    output: str
+    band_hz: "StudyPair"
+
+
+class StudyResponse(_StudyResponseAlways, total=False):
+    """What a forced vibration is caused by, and what it is seen in."""
+
+    configuration: str
+    profile: str
+    description: str
+    source: str
+
+
+class StudyPublished(TypedDict, total=False):
+    """A published number to compare with: a parameter, a quantity, a frequency, a MAC, or the
+    study's status.
+    """
+
+    parameter: str
+    quantity: str
+    frequency: "StudyPublishedFrequency"
+    mac: "StudyPublishedMac"
+    status: Literal["solved", "compromise", "infeasible", "fitted"]
+    value: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    tolerance: "StudyNumber"
+    tolerance_percent: "StudyNumber"
+    design: Literal["recommended", "original"]
+    role: Literal["verifies", "calibrates", "not_comparable"]
+    label: str
+    description: str
+    source: str
+
+
+class _StudyPublishedFrequencyAlways(TypedDict):
+    mode: "StudyMode"
+
+
+class StudyPublishedFrequency(_StudyPublishedFrequencyAlways, total=False):
+    """Which natural frequency was published."""
+
+    configuration: str
+
+
+class _StudyPublishedMacAlways(TypedDict):
+    mode: "StudyMode"
+    reference: str
+
+
+class StudyPublishedMac(_StudyPublishedMacAlways, total=False):
+    """Which MAC was published."""
+
+    configuration: str
+    reference_mode: "StudyIndex"
+
+
+class _StudyGoalFrequencyAlways(TypedDict):
+    type: Literal["frequency"]
+    mode: "StudyMode"
+
+
+class StudyGoalFrequency(_StudyGoalFrequencyAlways, total=False):
+    """A natural frequency: equal to a target or to that of a reference, or within limits."""
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    target_hz: "StudyNumber"
+    reference: str
+    reference_mode: "StudyIndex"
+    at_least_hz: "StudyNumber"
+    at_most_hz: "StudyNumber"
+    weight: "StudyNumber"
+
+
+class _StudyGoalShapeAlways(TypedDict):
+    type: Literal["shape"]
+    mode: "StudyMode"
+    reference: str
+    weight: "StudyNumber"
+
+
+class StudyGoalShape(_StudyGoalShapeAlways, total=False):
+    """A mode shape close to a reference's: a residual of the objective "misfit" (difference of
+    unit vectors at the common sensors).
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    reference_mode: "StudyIndex"
+    length_m: "StudyNumber"
+
+
+class _StudyGoalMacAlways(TypedDict):
+    type: Literal["mac"]
+    mode: "StudyMode"
+    reference: str
+    at_least: "StudyNumber"
+
+
+class StudyGoalMac(_StudyGoalMacAlways, total=False):
+    """A modal assurance criterion with a reference's shape."""
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    reference_mode: "StudyIndex"
+    length_m: "StudyNumber"
+
+
+class _StudyGoalDampingAlways(TypedDict):
+    type: Literal["damping"]
+    mode: "StudyMode"
+
+
+class StudyGoalDamping(_StudyGoalDampingAlways, total=False):
+    """The damping ratio of a complex mode: at a target, or within limits. No proof covers it.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    target: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    weight: "StudyNumber"
+
+
+class _StudyGoalResponseAlways(TypedDict):
+    type: Literal["response"]
+    input: str
+    output: str
+
+
+class StudyGoalResponse(_StudyGoalResponseAlways, total=False):
+    """A limit on a frequency response: the amplitude of an output for an input of 1, at one
+    frequency or the largest over a band.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    target: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    weight: "StudyNumber"
+    band_hz: "StudyPair"
+    at_hz: "StudyNumber"
+
+
+class _StudyGoalVibrationAlways(TypedDict):
+    type: Literal["vibration"]
+    output: str
+    profile: str
+
+
+class StudyGoalVibration(_StudyGoalVibrationAlways, total=False):
+    """A limit on the vibration of an output under a vibration profile."""
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    input: str
+    target: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    weight: "StudyNumber"
+    quantity: Literal["rms", "sine", "peak"]
+
+
+class _StudyGoalFrequencyResponseAlways(TypedDict):
+    type: Literal["frequency_response"]
+    input: str
+    output: str
+    measurement: str
+    weight: "StudyNumber"
+
+
+class StudyGoalFrequencyResponse(_StudyGoalFrequencyResponseAlways, total=False):
+    """A frequency response close to a measured one: residuals of the objective "misfit",
+    ln(response/measured) at each of the measured frequencies, each with 1/N of the weight.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    band_hz: "StudyPair"
+    coherence: bool
+
+
+class _StudyGoalLimitAlways(TypedDict):
+    type: Literal["limit"]
+    expression: str
+
+
+class StudyGoalLimit(_StudyGoalLimitAlways, total=False):
+    """A limit on an expression of the parameters."""
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    equals: "StudyNumber"
+
+
+class _StudyGoalAvoidAlways(TypedDict):
+    type: Literal["avoid"]
+
+
+class StudyGoalAvoid(_StudyGoalAvoidAlways, total=False):
+    """Forbidden frequency bands: every mode keeps clear of them. Bands that overlap are merged.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    bands_hz: List["StudyPair"]
+    rotor: "StudyRotor"
+    rotors: List["StudyRotor"]
+    machine: "StudyMachine"
+    machines: List["StudyMachine"]
+    margin_percent: "StudyNumber"
+    up_to_hz: "StudyNumber"
+    cluster: int
+
+
+class _StudyAlways(TypedDict):
+    format: Literal["modetune-study/1"]
+    model: str
+
+
+_StudySometimes = TypedDict("_StudySometimes", {
+    "$schema": str,
+    "name": str,
+    "description": str,
+    "source": str,
+    "author": str,
+    "revision": str,
+    "date": str,
+    "accepted": List[
+        Literal["angle", "band", "bounds", "bushing", "damping", "density", "drive", "dropped",
+        "frequency", "gap", "gravity", "inertia", "level", "margin", "mass", "modulus",
+        "no_effect", "off", "reference", "section", "size", "speed", "speed_range", "spread",
+        "spring", "target", "tolerance", "unit", "weight"]
+    ],
+    "units": "StudyUnits",
+    "variables": List["StudyVariable"],
+    "goals": List["StudyGoal"],
+    "objective": Union[List["StudyObjective"], "StudyObjective"],
+    "references": Dict[str, "StudyReference"],
+    "measurements": Dict[str, "StudyMeasurement"],
+    "recommendations": int,
+    "search": "StudySearch",
+    "spread": "StudySpread",
+    "aircraft": str,
+    "trade": "StudyTrade",
+    "responses": List["StudyResponse"],
+    "published": List["StudyPublished"],
+}, total=False)
+
+
+class Study(_StudyAlways, _StudySometimes):
+    """A question asked of a mechanism: which parameters may change, which natural frequencies
+    and shapes are wanted, what is known already.
+    """
+
+
+class _AircraftAircraftAlways(TypedDict):
+    name: str
+    main: "AircraftRotor"
+
+
+class AircraftAircraft(_AircraftAircraftAlways, total=False):
+    """An aircraft: its main rotor (rotors, where several turn alike) and its tail rotor."""
+
+    description: str
+    source: str
+    tail: "AircraftRotor"
+
+
+class _AircraftRotorAlways(TypedDict):
+    blades: "AircraftBlades"
+
+
+class AircraftRotor(_AircraftRotorAlways, total=False):
+    """A rotor: its nominal speed and its blades."""
+
+    speed_hz: "AircraftSpeed"
+    speed_rpm: "AircraftSpeed"
+    description: str
+
+
+class _AircraftSpeedAlways(TypedDict):
+    value: float
+    source: str
+    confirmed: bool
+
+
+class AircraftSpeed(_AircraftSpeedAlways, total=False):
+    """A speed, and who says so."""
+
+    description: str
+
+
+class _AircraftBladesAlways(TypedDict):
+    value: int
+    source: str
+    confirmed: bool
+
+
+class AircraftBlades(_AircraftBladesAlways, total=False):
+    """A number of blades, and who says so."""
+
+    description: str
+
+
+class _AircraftAlways(TypedDict):
+    format: Literal["modetune-aircraft/1"]
+    aircraft: List["AircraftAircraft"]
+
+
+_AircraftSometimes = TypedDict("_AircraftSometimes", {
+    "$schema": str,
+    "description": str,
+    "source": str,
+    "accepted": List[
+        Literal["angle", "band", "bounds", "bushing", "damping", "density", "drive", "dropped",
+        "frequency", "gap", "gravity", "inertia", "level", "margin", "mass", "modulus",
+        "no_effect", "off", "reference", "section", "size", "speed", "speed_range", "spread",
+        "spring", "target", "tolerance", "unit", "weight"]
+    ],
+}, total=False)
+
+
+class Aircraft(_AircraftAlways, _AircraftSometimes):
+    """A catalogue of aircraft for studies that avoid the harmonics of rotors: speeds and
+    numbers of blades, each with its source.
+    """
+
+
+class ProfileRandom(TypedDict, total=False):
+    """Stationary random acceleration by the breakpoints of its one-sided density: straight
+    lines in log-log scales, 0 outside.
+    """
+
+    psd_g2_per_hz: "ProfileBreakpoints"
+    psd_m2_per_s3: "ProfileBreakpoints"
+    published_rms_g: float
+    origin: "ProfileOrigin"
+    source: str
+    description: str
+
+
+class ProfileSlope(TypedDict):
+    """A breakpoint whose density follows from a slope: from the breakpoint before it or, in
+    front of the first density, from the one after it.
+    """
+
+    frequency_hz: float
+    slope_db_per_octave: float
+
+
+class ProfileTone(TypedDict, total=False):
+    """A sine whose frequency may lie anywhere within a range, or one for each harmonic of a
+    rotor.
+    """
+
+    frequency_hz: "ProfilePair"
+    rotor: "ProfileRotor"
+    acceleration_g: float
+    acceleration_m_per_s2: float
+    origin: "ProfileOrigin"
+    source: str
+    description: str
+
+
+class ProfileCombine(TypedDict, total=False):
+    """The combined peak is sigma times the RMS of the random response, and the peaks of the
+    tones by a rule.
+    """
+
+    tones: Literal["sum", "largest", "root_sum_square"]
+    sigma: float
+    description: str
+
+
+class _ProfileRotorAlways(TypedDict):
+    harmonics: List[str]
+
+
+class ProfileRotor(_ProfileRotorAlways, total=False):
+    """A rotor that excites at its harmonics: an aircraft of the catalogue, or a speed."""
+
+    aircraft: str
+    speed_hz: float
+    speed_rpm: float
+    blades: int
+    tail: "ProfileTailRotor"
+    name: str
+    speed_range: "ProfilePair"
+    description: str
+    source: str
+
+
+class ProfileTailRotor(TypedDict, total=False):
+    """The tail rotor."""
+
+    speed_hz: float
+    speed_rpm: float
+    blades: int
+    description: str
+    source: str
+
+
+class _ProfileAlways(TypedDict):
+    format: Literal["modetune-profile/1"]
+
+
+_ProfileSometimes = TypedDict("_ProfileSometimes", {
+    "$schema": str,
+    "name": str,
+    "description": str,
+    "source": str,
+    "accepted": List[
+        Literal["angle", "band", "bounds", "bushing", "damping", "density", "drive", "dropped",
+        "frequency", "gap", "gravity", "inertia", "level", "margin", "mass", "modulus",
+        "no_effect", "off", "reference", "section", "size", "speed", "speed_range", "spread",
+        "spring", "target", "tolerance", "unit", "weight"]
+    ],
+    "aircraft": str,
+    "axis": Literal["x", "y", "z"],
+    "random": Union["ProfileRandom", List["ProfileRandom"]],
+    "tones": List["ProfileTone"],
+    "combine": "ProfileCombine",
+}, total=False)
+
+
+class Profile(_ProfileAlways, _ProfileSometimes):
+    """A vibration profile: the acceleration of a base, as random parts, tones, or both (sine on
+    random). Numbers are plain; expressions are not allowed.
+    """
+
+
+class ResultFile(TypedDict):
+    """A file that was read."""
+
+    name: Optional[str]
+    file: str
+
+
+class ResultDoubt(TypedDict):
+    """A fact or a doubt, with its place in a file where that is known."""
+
+    kind: str
+    text: str
+    configuration: Optional[str]
+    file: Optional[str]
+    line: Optional[int]
+    column: Optional[int]
+    pointer: Optional[str]
+
+
+class ResultDesignObjective(TypedDict):
+    """An objective's values. A clearance is the least distance from a band with its margin, as
+    a ratio of frequencies less 1; "clearance_percent" is that from the edges without it.
+    """
+
+    text: str
+    unit: Optional[str]
+    original: Optional[float]
+    recommended: Optional[float]
+
+
+class ResultRow(TypedDict):
+    """A mode of the configuration."""
+
+    mode: int
+    values: List[Optional[float]]
+
+
+class ResultMacMatrice(TypedDict):
+    """A configuration beside a reference."""
+
+    configuration: str
+    reference: str
+    reference_modes: List[Optional[float]]
+    rows: List["ResultRow"]
+
+
+class ResultDesign(TypedDict):
+    """A design, judged."""
+
+    rank: int
+    feasible: bool
+    grade: Optional[str]
+    score: Optional[float]
+    objectives: List["ResultDesignObjective"]
+    change: Optional[float]
+    misfit: Optional[float]
+    violation_percent: Optional[float]
+    clearance_percent: Optional[float]
+    kkt_residual: Optional[float]
+    worst_case: Optional[Literal["proven", "sampled"]]
+    singular: bool
+    parameters: List["ResultParameter"]
+    frequencies: List["ResultFrequency"]
+    mac_matrices: List["ResultMacMatrice"]
+    clearances: List["ResultClearance"]
+    gap_assignment: Optional[List["ResultGap"]]
+    motion: List["ResultMotion"]
+    tolerance_box: Optional["ResultToleranceBox"]
+    goals: List["ResultGoal"]
+    responses: List["ResultResponse"]
+    responses_between: List["ResultResponseBetween"]
+    curves: List["ResultDesignCurve"]
+    reasons: List["ResultReason"]
+
+
+class ResultParameter(TypedDict):
+    """A parameter that the study may change."""
+
+    name: str
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    original: Optional[float]
+    recommended: Optional[float]
+    change_percent: Optional[float]
+    at_bound: Optional[Literal["lower", "upper"]]
+    lower: Optional[float]
+    upper: Optional[float]
+    measure: Literal["logarithmic", "logarithmic with floor", "linear"]
+    measure_floor: Optional[float]
+    measure_scale: Optional[float]
+
+
+class ResultFrequency(TypedDict):
+    """A natural frequency that the goals ask about."""
+
+    configuration: str
+    mode: int
+    name: Optional[str]
+    identity: Optional[Literal["tracked", "ambiguous", "lost"]]
+    share: Optional[float]
+    rival_mode: Optional[int]
+    rival_share: Optional[float]
+    original_hz: Optional[float]
+    recommended_hz: Optional[float]
+    target_hz: Optional[float]
+    at_least_hz: Optional[float]
+    at_most_hz: Optional[float]
+    error_percent: Optional[float]
+    lowest_hz: Optional[float]
+    highest_hz: Optional[float]
+    reference: Optional[str]
+    mac: Optional[float]
+    repeated: bool
+    sensitivity: Optional[Dict[str, Optional[float]]]
+    residual: Optional[float]
+    orthogonality: Optional[float]
+
+
+class ResultClearance(TypedDict):
+    """A mode beside a band."""
+
+    configuration: str
+    band: str
+    band_id: int
+    mode: int
+    hz: Optional[float]
+    percent: Optional[float]
+    margin_percent: Optional[float]
+    worst_hz: Optional[float]
+    worst_percent: Optional[float]
+    side: Literal["below", "inside", "above"]
+
+
+class ResultGap(TypedDict):
+    """How many modes lie below a band."""
+
+    id: int
+    configuration: str
+    band: str
+    lower_hz: Optional[float]
+    upper_hz: Optional[float]
+    margin_lower_hz: Optional[float]
+    margin_upper_hz: Optional[float]
+    modes_below: int
+
+
+_ResultMotionAlways = TypedDict("_ResultMotionAlways", {
+    "goal": str,
+    "drive": str,
+    "unit": Literal["rad", "m"],
+    "display_unit": Optional[str],
+    "display_factor": Optional[float],
+    "from": Optional[float],
+    "to": Optional[float],
+    "positions": int,
+    "least_clearance_percent": Optional[float],
+    "margin_percent": Optional[float],
+    "at": Optional[float],
+    "hz": Optional[float],
+    "mode": Optional[int],
+    "band": Optional[str],
+    "band_id": Optional[int],
+    "crosses": bool,
+    "grade": Literal["sampled", "sampled coarsely", "incomplete", "unstable", "not followed"],
+    "text": str,
+})
+
+
+class ResultMotion(_ResultMotionAlways):
+    """A design between the named positions of one drive."""
+
+
+class ResultPerVariable(TypedDict):
+    """One variable."""
+
+    name: str
+    percent: Optional[float]
+    edge: Optional[str]
+
+
+class ResultToleranceBox(TypedDict):
+    """How much the variables may change with every band, without its margin, still kept."""
+
+    all_percent: Optional[float]
+    edge: Optional[str]
+    proven: bool
+    per_variable: List["ResultPerVariable"]
+
+
+class ResultGoal(TypedDict):
+    """A goal, judged at this design."""
+
+    goal: str
+    quantity: str
+    pointer: str
+    type: Literal[
+        "frequency", "shape", "mac", "damping", "response", "vibration", "frequency_response",
+        "limit", "avoid"
+    ]
+    configuration: Optional[str]
+    mode: Optional[int]
+    name: Optional[str]
+    reference: Optional[str]
+    expression: Optional[str]
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    value: Optional[float]
+    target: Optional[float]
+    at_least: Optional[float]
+    at_most: Optional[float]
+    tolerance_percent: Optional[float]
+    worst: Optional[float]
+    worst_at: Optional[Dict[str, Optional[float]]]
+    sensitivity: Optional[Dict[str, Optional[float]]]
+    off_most_hz: Optional[float]
+    off_most_ratio: Optional[float]
+    off_most_phase_deg: Optional[float]
+    violation_percent: Optional[float]
+    met: bool
+    weighted: bool
+    doubtful: bool
+
+
+class ResultResponse(TypedDict):
+    """How large a forced vibration is."""
+
+    goal: str
+    configuration: str
+    input: str
+    output: str
+    profile: Optional[str]
+    quantity: Literal["response", "rms", "sine", "peak"]
+    unit: str
+    value: Optional[float]
+    error_at_most: Optional[float]
+    frequency_hz: Optional[float]
+    at_edge: bool
+    lower_hz: Optional[float]
+    upper_hz: Optional[float]
+    end: Literal["finite", "infinite", "unstable", "none"]
+    grade: Literal["proven", "sampled"]
+    text: str
+
+
+_ResultResponseBetweenAlways = TypedDict("_ResultResponseBetweenAlways", {
+    "goal": str,
+    "drive": str,
+    "unit": Literal["rad", "m"],
+    "from": Optional[float],
+    "to": Optional[float],
+    "positions": int,
+    "at": Optional[float],
+    "named": bool,
+    "value": Optional[float],
+    "value_unit": str,
+    "error_at_most": Optional[float],
+    "frequency_hz": Optional[float],
+    "end": Literal["finite", "infinite", "unstable", "none"],
+    "violation_percent": Optional[float],
+    "holds": bool,
+    "grade": Literal["sampled", "sampled coarsely", "incomplete", "unstable"],
+    "text": str,
+})
+
+
+class ResultResponseBetween(_ResultResponseBetweenAlways):
+    """The number of a goal over the positions of a drive."""
+
+
+class ResultExtreme(TypedDict):
+    """A maximum or a minimum."""
+
+    kind: Literal["peak", "resonance", "antiresonance", "minimum"]
+    frequency_hz: float
+    magnitude: Optional[float]
+    phase_deg: Optional[float]
+    natural_hz: Optional[float]
+    damping_ratio: Optional[float]
+
+
+class ResultDesignCurve(TypedDict):
+    """A response of one design."""
+
+    pointer: str
+    configuration: str
+    trouble: Optional[str]
+    extremes: List["ResultExtreme"]
+    vibration: Optional["ResultShaken"]
+    drawn: "ResultDrawn"
+
+
+class ResultTone(TypedDict):
+    """A tone."""
+
+    tone: str
+    frequency_hz: Optional[float]
+    peak: Optional[float]
+    excess_at_most: Optional[float]
+    at_edge: bool
+
+
+class ResultShaken(TypedDict):
+    """What a profile does to an output."""
+
+    end: Literal["finite", "infinite", "unstable"]
+    proven: bool
+    rms: Optional[float]
+    rms_error_at_most: Optional[float]
+    sine: Optional[float]
+    peak: Optional[float]
+    tones: List["ResultTone"]
+
+
+class ResultDrawn(TypedDict):
+    """The response at as many frequencies as a picture needs, extremes among them, where it is
+    finite and not 0. Between them the logarithm of the magnitude, and the phase, are straight
+    over the logarithm of the frequency, to about 2 % of the magnitude. The density of the
+    output under a profile is the square of the magnitude times the sum of the profile's
+    densities. Rounded to six digits, frequencies to eight.
+    """
+
+    frequency_hz: List[Optional[float]]
+    magnitude: List[Optional[float]]
+    phase_deg: List[Optional[float]]
+    psd: List[Optional[float]]
+
+
+class ResultReason(TypedDict):
+    """One sentence of why."""
+
+    kind: Literal["change", "hold", "cost", "rank"]
+    about: Optional[str]
+    text: str
+
+
+class ResultUnchecked(TypedDict):
+    """A design that was not analysed again."""
+
+    text: str
+    values: Dict[str, float]
+
+
+class ResultUndetermined(TypedDict):
+    """A direction in which the variables may move without any goal noticing."""
+
+    direction: str
+    effect_percent: Optional[float]
+    components: Dict[str, Optional[float]]
+
+
+class ResultSpread(TypedDict):
+    """Where a variable of the best design moves when the weight of one goal at a time is
+    changed.
+    """
+
+    parameter: str
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    value: Optional[float]
+    low: Optional[float]
+    low_percent: Optional[float]
+    low_goal: Optional[str]
+    low_weight_factor: Optional[float]
+    high: Optional[float]
+    high_percent: Optional[float]
+    high_goal: Optional[str]
+    high_weight_factor: Optional[float]
+
+
+class ResultCertificate(TypedDict):
+    """A statement about all designs within the bounds."""
+
+    kind: str
+    text: str
+    proven: bool
+    pointer: Optional[str]
+    reachable_lower_hz: Optional[float]
+    reachable_upper_hz: Optional[float]
+
+
+_ResultRelaxationAlways = TypedDict("_ResultRelaxationAlways", {
+    "kind": Literal["bound", "band", "goal"],
+    "pointer": str,
+    "what": str,
+    "unit": Optional[str],
+    "display_unit": Optional[str],
+    "display_factor": Optional[float],
+    "from": float,
+    "to": float,
+    "change_percent": Optional[float],
+    "design": Dict[str, float],
+    "text": str,
+})
+
+
+class ResultRelaxation(_ResultRelaxationAlways):
+    """One number of the question whose change, with everything else as it is, lets a design
+    meet all goals. That it suffices is verified; that a smaller change would not is sampled.
+    """
+
+
+class ResultOrder(TypedDict):
+    """Frequency over speed."""
+
+    label: str
+    order: float
+
+
+class ResultExcitation(TypedDict):
+    """Something that turns and excites at multiples of its speed."""
+
+    name: str
+    pointer: str
+    speed_lower_hz: float
+    speed_upper_hz: float
+    margin_percent: float
+    up_to_hz: Optional[float]
+    configurations: List[str]
+    orders: List["ResultOrder"]
+
+
+class ResultLimit(TypedDict):
+    """A limit of a goal."""
+
+    pointer: str
+    lower_hz: float
+    upper_hz: float
+    target: Optional[float]
+    at_least: Optional[float]
+    at_most: Optional[float]
+
+
+class ResultCurve(TypedDict):
+    """A frequency response that is shown."""
+
+    pointer: str
+    configuration: str
+    input: str
+    output: str
+    unit: str
+    output_unit: str
+    lower_hz: float
+    upper_hz: float
+    description: Optional[str]
+    source: Optional[str]
+    limits: List["ResultLimit"]
+    profile: Optional["ResultProfile"]
+    measured: "ResultDrawn"
+
+
+class ResultDensity(TypedDict):
+    """A density."""
+
+    frequency_hz: List[Optional[float]]
+    level: List[Optional[float]]
+
+
+class ResultProfileTone(TypedDict):
+    """A sine."""
+
+    tone: str
+    lower_hz: float
+    upper_hz: float
+    level: float
+
+
+class ResultProfile(TypedDict):
+    """A profile of vibration."""
+
+    file: str
+    name: Optional[str]
+    rms: Optional[float]
+    sigma: float
+    rule: str
+    densities: List["ResultDensity"]
+    tones: List["ResultProfileTone"]
+
+
+class ResultVary(TypedDict):
+    """A quantity."""
+
+    quantity: str
+    pointer: str
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+
+
+class ResultPoint(TypedDict):
+    """A point."""
+
+    values: List[Optional[float]]
+    status: Literal["solved", "compromise", "infeasible", "fitted", "interrupted", "time_limit"]
+    status_text: Optional[str]
+    pareto: bool
+    best: "ResultDesign"
+
+
+class ResultTrade(TypedDict):
+    """A trade study: the best design of every point."""
+
+    vary: List["ResultVary"]
+    objectives: List[str]
+    points: List["ResultPoint"]
+
+
+class ResultPublished(TypedDict):
+    """A published value against the computed one."""
+
+    label: Optional[str]
+    kind: Literal["parameter", "quantity", "frequency", "mac", "status"]
+    pointer: str
+    role: Literal["verifies", "calibrates", "not_comparable"]
+    published: Optional[Union[float, str]]
+    computed: Optional[Union[float, str]]
+    difference: Optional[float]
+    difference_percent: Optional[float]
+    demand: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    holds: bool
+    source: Optional[str]
+
+
+class ResultHistory(TypedDict):
+    """A design that was better than all before it."""
+
+    objective: int
+    round: int
+    evaluations: int
+    value: Optional[float]
+    violation: Optional[float]
+    feasible: bool
+
+
+class ResultSpent(TypedDict):
+    """What evaluations were for; all but the last add up to "evaluations". The same for any
+    number of workers, and for a run that was resumed.
+    """
+
+    search: int
+    positions: int
+    descriptions: int
+    spread: int
+    relaxations: int
+    trade: int
+    multiplications: int
+
+
+class ResultOverride(TypedDict):
+    """One of them."""
+
+    kind: Literal["parameter", "search"]
+    name: str
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    value: float
+    original: Optional[float]
+
+
+class ResultInput(TypedDict):
+    """A file and the digest of its bytes."""
+
+    file: str
+    sha256: str
+
+
+class ResultOutput(TypedDict):
+    """A file and the digest of its bytes."""
+
+    file: str
+    sha256: str
+
+
+class ResultRun(TypedDict):
+    """What ran: no time, path or number of workers."""
+
+    modetune: Optional[str]
+    build: "ResultBuild"
+    blas: Optional[str]
+    nlopt: Optional[str]
+    gsl: Optional[str]
+    seed: int
+    starts: int
+    distinct_designs: Optional[int]
+    found_once: Optional[int]
+    estimated_missing: Optional[float]
+    history: List["ResultHistory"]
+    evaluations: int
+    modal_solutions: int
+    spent: "ResultSpent"
+    incomplete: List[
+        Literal["search", "recommendations", "spread", "certificates", "relaxations",
+        "published", "trade"]
+    ]
+    cut_by: Optional[Literal["interrupt", "time limit"]]
+    overrides: List["ResultOverride"]
+    inputs: List["ResultInput"]
+    outputs: List["ResultOutput"]
+
+
+class ResultBuild(TypedDict):
+    """Sources and compiler of the program."""
+
+    commit: str
+    compiler: str
+
+
+class ResultStudy(TypedDict):
+    """The question."""
+
+    name: Optional[str]
+    file: str
+    author: Optional[str]
+    revision: Optional[str]
+    date: Optional[str]
+
+
+class ResultAssumption(TypedDict):
+    """An assumed value."""
+
+    parameter: str
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    value: float
+    source: Optional[str]
+    variable: bool
+
+
+class ResultObjective(TypedDict):
+    """An objective of the study."""
+
+    type: Literal["none", "change", "mass", "expression", "misfit", "clearance", "vibration"]
+    text: str
+    unit: Optional[str]
+
+
+class Result(TypedDict):
+    """What a study answers. SI units; frequencies in Hz; null stands for "not applicable"."""
+
+    format: Literal["modetune-result/1"]
+    study: "ResultStudy"
+    model: "ResultFile"
+    status: Literal["solved", "compromise", "infeasible", "fitted", "interrupted", "time_limit"]
+    status_text: Optional[str]
+    doubts: List["ResultDoubt"]
+    facts: List["ResultDoubt"]
+    assumptions: List["ResultAssumption"]
+    variables: List[str]
+    objectives: List["ResultObjective"]
+    baseline: "ResultDesign"
+    recommendations: List["ResultDesign"]
+    unchecked: List["ResultUnchecked"]
+    undetermined: Optional[List["ResultUndetermined"]]
+    spread: Optional[List["ResultSpread"]]
+    certificates: Optional[List["ResultCertificate"]]
+    relaxations: Optional[List["ResultRelaxation"]]
+    excitations: List["ResultExcitation"]
+    curves: List["ResultCurve"]
+    trade: Optional["ResultTrade"]
+    published: Optional[List["ResultPublished"]]
+    warnings: List[str]
+    run: "ResultRun"
+
+
+class IndexStudy(TypedDict):
+    """One of the studies."""
+
+    file: str
+    folder: str
+    state: Literal["answered", "not answered", "not run"]
+    name: Optional[str]
+    status: Optional[
+        Literal["solved", "compromise", "infeasible", "fitted", "interrupted", "time_limit"]
+    ]
+    grade: Optional[str]
+    change: Optional[float]
+    exit_status: Optional[Literal[0, 1, 2, 3, 4, 130]]
+    message: Optional[str]
+    result_sha256: Optional[str]
+
+
+class Index(TypedDict):
+    """What became of several studies that were run together: `modetune run` writes it beside
+    the folders of their results. Every member is always there; null is what there is not.
+    """
+
+    format: Literal["modetune-index/1"]
+    modetune: str
+    studies: List["IndexStudy"]
+
+
+class Progress(TypedDict):
+    """How far a command is: one object a line on standard error with `--progress json`, as
+    every phase and step begins that lasts long enough to be seen, twice a second besides, and
+    once at the end of reading and of answering a file. Other lines of standard error do not
+    begin with a brace. Every member is always there; null is what there is not, or what is not
+    known.
+    """
+
+    format: Literal["modetune-progress/1"]
+    file: str
+    number: int
+    files: int
+    state: Literal["running", "done", "ended"]
+    phase: Literal[
+        "reading", "baseline", "search", "recommendations", "spread", "certificates",
+        "relaxations", "published", "trade", "modes"
+    ]
+    step: int
+    unit: Optional[str]
+    done: int
+    total: Optional[int]
+    share: Optional[float]
+    evaluations: int
+    modal_solutions: int
+    boxes: int
+    objective: Optional[str]
+    best: Optional[float]
+    impossible: bool
+    first_cpu_s: Optional[float]
+    first_evaluations: Optional[int]
+    best_cpu_s: Optional[float]
+    best_evaluations: Optional[int]
+    proof_cpu_s: Optional[float]
+    cpu_s: float
+    elapsed_s: float
+    left_s: Optional[float]
+
+
+class SceneParameter(TypedDict):
+    """A parameter."""
+
+    name: str
+    value: float
+    unit: Optional[str]
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+
+
+class SceneEllipsoid(TypedDict):
+    """Uniform, of the same mass and inertia, at the mass centre; in two dimensions a disc.
+    null: it has none.
+    """
+
+    radii: List[float]
+    axes: List[List[float]]
+
+
+class SceneBody(TypedDict):
+    """A body."""
+
+    name: str
+    kind: Literal["ground", "body", "link"]
+    mass: float
+    at: List[float]
+    ellipsoid: Optional["SceneEllipsoid"]
+
+
+class ScenePoint(TypedDict):
+    """A point."""
+
+    name: str
+    body: int
+    at: List[float]
+
+
+_SceneLineAlways = TypedDict("_SceneLineAlways", {
+    "body": int,
+    "from": List[float],
+    "to": List[float],
+})
+
+
+class SceneLine(_SceneLineAlways):
+    """A line."""
+
+
+_SceneConfigurationJointAlways = TypedDict("_SceneConfigurationJointAlways", {
+    "name": str,
+    "type": str,
+    "bodies": List[int],
+    "from": Optional[List[float]],
+    "at": List[float],
+    "axis": Optional[List[float]],
+    "distance": float,
+    "far": Optional[str],
+})
+
+
+class SceneConfigurationJoint(_SceneConfigurationJointAlways):
+    """A joint."""
+
+
+_SceneSpringAlways = TypedDict("_SceneSpringAlways", {
+    "name": str,
+    "type": Literal["torsion", "axial", "bar", "bushing", "link"],
+    "bodies": List[int],
+    "from": List[float],
+    "to": List[float],
+    "axis": Optional[List[float]],
+    "stiffness": Optional[float],
+})
+
+
+class SceneSpring(_SceneSpringAlways):
+    """A spring."""
+
+
+_SceneDamperAlways = TypedDict("_SceneDamperAlways", {
+    "name": str,
+    "type": Literal["torsion", "axial", "bar", "bushing"],
+    "bodies": List[int],
+    "from": List[float],
+    "to": List[float],
+    "axis": Optional[List[float]],
+    "damping": Optional[float],
+})
+
+
+class SceneDamper(_SceneDamperAlways):
+    """A damper."""
+
+
+class SceneSensor(TypedDict):
+    """A sensor."""
+
+    name: str
+    body: int
+    at: List[float]
+    axis: List[float]
+
+
+class SceneLoad(TypedDict):
+    """A load."""
+
+    name: str
+    body: int
+    at: List[float]
+    axis: List[float]
+
+
+class SceneRotor(TypedDict):
+    """A rotor."""
+
+    name: str
+    body: int
+    at: List[float]
+    axis: List[float]
+
+
+class SceneEnergy(TypedDict):
+    """Shares of its energy, rounded down: they never add up to more than 1."""
+
+    springs: List[float]
+    bodies: List[float]
+
+
+class SceneMode(TypedDict):
+    """A mode as a small motion."""
+
+    mode: int
+    hz: Optional[float]
+    name: Optional[str]
+    note: Optional[Literal["rigid-body", "unstable", "undecided"]]
+    motion: List[List[float]]
+    energy: "SceneEnergy"
+
+
+class ScenePosition(TypedDict):
+    """One position of the driven joint."""
+
+    at: float
+    poses: Optional[List[List[float]]]
+    hz: List[Optional[float]]
+    error: Optional[str]
+
+
+class SceneDrive(TypedDict):
+    """The range of a driven joint: from the lowest to the highest position that a configuration
+    of the model drives it to.
+    """
+
+    joint: str
+    unit: Literal["rad", "m"]
+    at: Optional[float]
+    error: Optional[str]
+    positions: List["ScenePosition"]
+
+
+class SceneConfiguration(TypedDict):
+    """One configuration at one design, where it comes to rest."""
+
+    name: str
+    error: Optional[str]
+    bodies: List["SceneBody"]
+    points: List["ScenePoint"]
+    lines: List["SceneLine"]
+    joints: List["SceneConfigurationJoint"]
+    springs: List["SceneSpring"]
+    dampers: List["SceneDamper"]
+    sensors: List["SceneSensor"]
+    loads: List["SceneLoad"]
+    rotors: List["SceneRotor"]
+    modes: List["SceneMode"]
+    drive: Optional["SceneDrive"]
+
+
+class SceneDesign(TypedDict):
+    """A design."""
+
+    label: str
+    rank: int
+    parameters: List["SceneParameter"]
+    configurations: List["SceneConfiguration"]
+
+
+class SceneJoint(TypedDict):
+    """A joint."""
+
+    configuration: str
+    joint: str
+    type: str
+    body: Optional[str]
+    distance: float
+
+
+class Scene(TypedDict):
+    """What there is to see of a mechanism, as `modetune show --format json` prints it and its
+    page draws it: for pictures, so that places have six significant digits and frequencies
+    nine. SI units, ground coordinates, z = 0 in two dimensions. Bodies are numbered from the
+    ground, 0.
+    """
+
+    format: Literal["modetune-scene/1"]
+    model: str
+    dimension: Literal[2, 3]
+    size: float
+    gravity: Optional[List[float]]
+    designs: List["SceneDesign"]
+    joints: List["SceneJoint"]
+
+
+ModelNumber = Union[float, str]
+ModelVector = List["ModelNumber"]
+ModelPosition = Union[str, "ModelVector"]
+ModelAt = Union["ModelPosition", List["ModelPosition"]]
+ModelOrigin = Literal["published", "identified", "assumed"]
+StudyNumber = Union[float, str]
+StudyIndex = int
+StudyMode = Union[int, str]
+StudyPair = List["StudyNumber"]
+StudyGoal = Union[
+    "StudyGoalFrequency", "StudyGoalShape", "StudyGoalMac", "StudyGoalDamping",
+    "StudyGoalResponse", "StudyGoalVibration", "StudyGoalFrequencyResponse", "StudyGoalLimit",
+    "StudyGoalAvoid"
+]
+ProfilePair = List[float]
+ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
+ProfileOrigin = Literal["published", "identified", "assumed"]
