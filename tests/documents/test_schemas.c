@@ -19,6 +19,7 @@
 #include "model/read.h"
 #include "mt_test.h"
 #include "result/result.h"
+#include "scene/write.h"
 #include "study/read.h"
 
 enum { WIDTH = 145, SCHEMA_LIMIT = 1 << 20, MOST_DEFINITIONS = 64 };
@@ -461,6 +462,56 @@ static void add_records(mt_test *t, mt_text *out, const char *room, const char *
     mt_text_add(out, "}");
 }
 
+static void add_scene_table(mt_test *t, mt_text *out, const mt_scene_table *table,
+                            bool or_null);
+
+static void add_scene_row(mt_test *t, mt_text *out, const mt_scene_row *row)
+{
+    mt_test_row(t, "scene, member \"%s\"", row->name);
+    CHECK(t, row->says != NULL && (row->of == NULL) == (row->schema != NULL));
+    add_string(out, row->name);
+    mt_text_add(out, ": {");
+    add_text(out, "description", row->says);
+    mt_text_add(out, ", ");
+    if (row->list) {
+        mt_text_add(out, "\"type\": \"array\", \"items\": {");
+        add_text(out, "description", row->of->says);
+        mt_text_add(out, ", ");
+        add_scene_table(t, out, row->of, false);
+        mt_text_add(out, "}");
+    } else if (row->of != NULL) {
+        add_scene_table(t, out, row->of, row->or_null);
+    } else {
+        mt_text_add(out, row->schema);
+    }
+    for (int i = 0; i < row->n_choices; i++) {
+        mt_text_add(out, i == 0 ? ", \"enum\": [" : ", ");
+        add_string(out, row->choices[i]);
+        mt_text_add(out, i + 1 < row->n_choices ? "" : row->or_null ? ", null]" : "]");
+    }
+    mt_text_addf(out, "%s%s}", row->limits == NULL ? "" : ", ",
+                 row->limits == NULL ? "" : row->limits);
+}
+
+static void add_scene_table(mt_test *t, mt_text *out, const mt_scene_table *table, bool or_null)
+{
+    const char *names[MT_MAX_KEYS] = {NULL};
+    const int n = table->n;
+    REQUIRE(t, n <= MT_MAX_KEYS);
+    for (int i = 0; i < n; i++) {
+        names[i] = table->rows[i].name;
+    }
+    add_type_or_null(out, "object", or_null);
+    mt_text_add(out, ", \"additionalProperties\": false, ");
+    add_texts(out, "required", n, names);
+    mt_text_add(out, ", \"properties\": {");
+    for (int i = 0; i < n; i++) {
+        mt_text_add(out, i == 0 ? "" : ", ");
+        add_scene_row(t, out, &table->rows[i]);
+    }
+    mt_text_add(out, "}");
+}
+
 /* A value in one line, as it stands in the source. */
 static void add_line(mt_text *out, const mt_json *doc, const char *source, mt_addr value)
 {
@@ -580,5 +631,18 @@ static void schema__of_what_is_written_is_what_its_records_say(mt_test *t)
     }
 }
 
-MT_TEST_MAIN(MT_TEST(schema__of_a_document_is_what_its_tables_say),
+static void schema__of_a_scene_is_what_its_tables_say(mt_test *t)
+{
+    mt_text compact = {.s = NULL};
+    add_head(&compact, "scene", "scene");
+    add_text(&compact, "description", mt_scene_members.says);
+    mt_text_add(&compact, ", ");
+    add_scene_table(t, &compact, &mt_scene_members, false);
+    mt_text_add(&compact, "}");
+    check_schema(t, "scene", &compact);
+    mt_text_free(&compact);
+}
+
+MT_TEST_MAIN(MT_TEST(schema__of_a_scene_is_what_its_tables_say),
+             MT_TEST(schema__of_a_document_is_what_its_tables_say),
              MT_TEST(schema__of_what_is_written_is_what_its_records_say))
