@@ -8,7 +8,7 @@ struct mt_forced_response_value;
 
 /*
  * The operations of a kind of goal (goals.c, goal_<kind>.c); its description in files is in
- * study/goal_kinds.h. Most kinds are a value q with a slope, limited to an interval; rows,
+ * study/goals.h. Most kinds are a value q with a slope, limited to an interval; rows,
  * residuals, violations, relaxations, proofs and sentences follow from q and the kind's
  * measure,
  *     ratio        row = ln(q / limit)           slope d ln q / dt (infinite q: w->beyond)

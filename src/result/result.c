@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result/result.h"
 
-#include "study/goal_kinds.h"
+#include "study/goals.h"
 #include "study/objective_kinds.h"
 
 /* What each record holds, in the order of result.json. */

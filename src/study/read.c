@@ -174,7 +174,7 @@ const mt_key_table mt_study_keys = {
 
 const mt_key_table *const *mt_study_key_tables(int *n)
 {
-#define GOAL_KEYS(id, ...) &mt_study_goal_keys[MT_GOAL_##id],
+#define GOAL_KEYS(id, name, ...) &mt_goal_##name##_keys,
     static const mt_key_table *const tables[] = {&mt_study_keys,
                                                  &mt_study_units_keys,
                                                  &mt_study_search_keys,

@@ -59,13 +59,21 @@ mt_study_reader *mt_study_reader_of(mt_reader *r);
         .says = __VA_ARGS__                                                          \
     }
 /* int, a mode by its index from 1 */
-#define MT_M_INDEX(label, m, ...) \
-    MT_M_COUNT(label, false, m, 1, MT_MAX_LIST, __VA_ARGS__, .schema = MT_GOAL_INDEX)
+#define MT_S_INDEX(label, m, ...)                            \
+    MT_M_COUNT(label, false, m, 1, MT_MAX_LIST, __VA_ARGS__, \
+               .schema = "\"allOf\": [{\"$ref\": \"#/definitions/index\"}]")
+/* mt_mode_ref, a mode by its index or name; required */
+#define MT_S_MODE(label, m, ...)                                                          \
+    {                                                                                     \
+        .name = (label), .type = MT_KEY_TEXT_OR_COUNT, .required = true, MT_M_ROW(WHOLE), \
+        MT_M_TO(mt_study_mode, mt_mode_ref, m), .says = __VA_ARGS__                       \
+    }
 /* NOLINTEND(bugprone-macro-parentheses) */
 void mt_study_number(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_study_value(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_study_pair(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_study_expr(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_study_mode(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 
 /* A number; expressions are evaluated at the original design. NaN where absent or wrong
  * (noted). Values that are impossible or implausible by the row of its member are noted. */
@@ -80,10 +88,6 @@ const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *paramete
 void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value);
 /* An expression that follows the design, and its text. */
 void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
-/* "mode": a name or an index from 1. */
-mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_object *o, const char *member);
-/* An index from 1; 0 where absent or wrong. */
-int mt_read_study_index(mt_study_reader *s, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
 const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
 /* A list of two numbers, lower and upper, of a member or an item of it; false (noted) where it
@@ -99,10 +103,6 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
 
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
-void mt_read_study_goals(mt_study_reader *s, mt_addr list);
-/* Read the catalogue of aircraft: the one named, else, where a goal needs one, that in the
- * model's folder, else the one built into the program. Call it after the goals. */
-void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* Call it after variables and goals; goals: the list of goals, whose indices it uses. */
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
@@ -119,7 +119,6 @@ extern const mt_key_table mt_study_span_keys;
 extern const mt_key_table mt_study_reference_keys;
 extern const mt_key_table mt_study_measured_keys;
 extern const mt_key_table mt_study_measurement_keys;
-extern const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT]; /* by kind */
 extern const mt_key_table mt_study_rotor_keys;
 extern const mt_key_table mt_study_tail_keys;
 extern const mt_key_table mt_study_machine_keys;

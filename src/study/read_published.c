@@ -1,34 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/read_priv.h"
 
-static void frequency_finish(mt_reader *r, const mt_object *o, int which, void *item)
-{
-    (void)which;
-    ((mt_published *)item)->mode = mt_read_study_mode(mt_study_reader_of(r), o, "mode");
-}
-
 #define THIS mt_published
 #define PUBLISHED_MODE_ROWS                                        \
     MT_M_REF("configuration", false, configuration_name,           \
              "Configuration of the model. Absent: its only one."), \
-        MT_M_JUST("mode", TEXT_OR_COUNT, true, WHOLE, "Which mode: index from 1 or name.")
+        MT_S_MODE("mode", mode, "Which mode: index from 1 or name.")
 static const mt_key FREQUENCY[] = {PUBLISHED_MODE_ROWS};
 static const mt_key MAC[] = {
     PUBLISHED_MODE_ROWS,
     MT_M_REF("reference", true, reference_name, "Name of one of the study's references."),
-    MT_M_INDEX("reference_mode", reference_mode,
+    MT_S_INDEX("reference_mode", reference_mode,
                "Mode of the reference. Absent: the same index as \"mode\"."),
 };
 const mt_key_table mt_study_published_frequency_keys = {
     .what = "published_frequency",
     .keys = FREQUENCY,
     .n = MT_COUNT(FREQUENCY),
-    .finish = frequency_finish,
     .says = "Which natural frequency was published."};
 const mt_key_table mt_study_published_mac_keys = {.what = "published_mac",
                                                   .keys = MAC,
                                                   .n = MT_COUNT(MAC),
-                                                  .finish = frequency_finish,
                                                   .says = "Which MAC was published."};
 
 static const char *const DESIGNS[] = {"recommended", "original"};

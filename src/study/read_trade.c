@@ -171,14 +171,14 @@ static int varying_members(const char **names)
     int n = 0;
     for (int i = 0; i < MT_GOAL_TYPE_COUNT; i++) {
         const mt_goal_kind *const kind = mt_goal_kind_of((mt_goal_type)i);
-        for (int k = 0; k < kind->n; k++) {
-            const mt_goal_member *const m = &kind->members[k];
-            bool known = !mt_goal_may_vary(m);
+        for (int k = 0; k < MT_SLOT_NONE; k++) {
+            const char *const name = mt_goal_member_name(kind, (mt_goal_slot)k);
+            bool known = name == NULL;
             for (int j = 0; j < n && !known; j++) {
-                known = strcmp(names[j], m->name) == 0;
+                known = strcmp(names[j], name) == 0;
             }
             if (!known) {
-                names[n++] = m->name;
+                names[n++] = name;
             }
         }
     }
@@ -187,7 +187,7 @@ static int varying_members(const char **names)
 
 static void read_vary(mt_study_reader *s, mt_addr value, mt_addr goals, mt_vary *v)
 {
-    const char *members[MT_GOAL_TYPE_COUNT * MT_MAX_KEYS];
+    const char *members[MT_GOAL_TYPE_COUNT * MT_SLOT_NONE];
     const int n_members = varying_members(members);
     mt_object o;
     *v = mt_vary_default(MT_VARY_PARAMETER, value);

@@ -74,26 +74,6 @@ void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const c
     }
 }
 
-int mt_read_study_index(mt_study_reader *s, mt_addr value)
-{
-    return mt_reader_count(&s->r, value, 1, MT_MAX_LIST, 0);
-}
-
-mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_object *o, const char *member)
-{
-    const mt_addr value = mt_object_value(o, member);
-    mt_mode_ref mode = {.named = MT_ABSENT, .addr = mt_object_place(&s->r, o, member)};
-    if (value == MT_NO_ADDR) {
-        return mode;
-    }
-    if (mt_json_type_of(s->r.doc, value) == MT_JSON_STRING) {
-        mode.mode_name = mt_reader_ref(&s->r, value);
-    } else {
-        mode.index = mt_read_study_index(s, value);
-    }
-    return mode;
-}
-
 /* A place in the struct. */
 static void *place(void *item, size_t at)
 {
@@ -128,6 +108,16 @@ void mt_study_expr(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     mt_read_study_expr(mt_study_reader_of(r), value, place(item, key->at),
                        (const char **)place(item, key->other));
+}
+
+void mt_study_mode(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_mode_ref *const mode = place(item, key->at);
+    if (mt_json_type_of(r->doc, value) == MT_JSON_STRING) {
+        mode->mode_name = mt_reader_ref(r, value);
+    } else {
+        mode->index = mt_reader_count(r, value, 1, MT_MAX_LIST, 0);
+    }
 }
 
 static int parameter_of(const mt_study_reader *s, const char *name)

@@ -37,4 +37,22 @@ typedef struct mt_study_profile {
     mt_vibration *profile; /* NULL: it could not be read, which has been noted */
 } mt_study_profile;
 
+/* A response that the result shows of every design. */
+typedef struct mt_study_response {
+    mt_name configuration_name;
+    int configuration;
+    mt_response_limit response_limit; /* ports and frequencies; a profile, where there is one */
+    const char *description;
+    const char *source;
+    mt_addr addr;
+} mt_study_response;
+
+struct mt_goal;
+struct mt_study_check;
+/* Check frequencies, profile and measurement of a goal about ports, and find its unit. */
+void mt_study_check_response_limit(struct mt_study_check *c, struct mt_goal *goal);
+void mt_study_check_responses(struct mt_study_check *c);
+/* Check that the two frequencies of the range, "band_hz" of its owner, ascend. */
+void mt_check_range(struct mt_study_check *c, const mt_response_limit *s, mt_addr owner);
+
 #endif

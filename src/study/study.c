@@ -56,11 +56,6 @@ bool mt_study_has_bands(const mt_study *study)
     return false;
 }
 
-bool mt_goal_is_limit(const mt_goal *goal)
-{
-    return goal->response_limit != NULL && MT_HAS(goal->at_most) && !MT_HAS(goal->at_least);
-}
-
 bool mt_study_has_limits(const mt_study *study)
 {
     for (int g = 0; g < study->n_goals; g++) {
@@ -182,11 +177,6 @@ bool mt_study_locate(const mt_study *study, const char *text, int *line, int *co
     return at != MT_NO_ADDR;
 }
 
-static mt_mode_ref no_mode(mt_addr addr)
-{
-    return (mt_mode_ref){.named = MT_ABSENT, .addr = addr};
-}
-
 mt_variable mt_variable_default(mt_addr addr)
 {
     return (mt_variable){
@@ -200,42 +190,6 @@ mt_variable mt_variable_default(mt_addr addr)
         .original = nan(""),
         .addr = addr,
     };
-}
-
-mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
-{
-    return (mt_goal){
-        .type = type,
-        .mode = no_mode(addr),
-        .equals = nan(""),
-        .at_least = nan(""),
-        .at_most = nan(""),
-        .tolerance_percent = MT_DEFAULT_TOLERANCE_PERCENT,
-        .weight = nan(""),
-        .length = nan(""),
-        .reference_name = {.addr = addr},
-        .reference = MT_ABSENT,
-        .addr = addr,
-    };
-}
-
-double mt_goal_tolerance(const mt_goal *goal)
-{
-    return goal->tolerance_percent / 100.0;
-}
-
-mt_avoid mt_avoid_default(void)
-{
-    return (mt_avoid){
-        .source = {.margin_percent = nan(""), .up_to_hz = nan("")},
-        .cluster = MT_DEFAULT_CLUSTER,
-    };
-}
-
-mt_response_limit mt_response_limit_default(void)
-{
-    return (mt_response_limit){
-        .lower_hz = nan(""), .upper_hz = nan(""), .unit = "", .measurement = MT_ABSENT};
 }
 
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
@@ -255,7 +209,7 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
         .kind = kind,
         .parameter = MT_ABSENT,
         .configuration = MT_ABSENT,
-        .mode = no_mode(addr),
+        .mode = {.named = MT_ABSENT},
         .reference = MT_ABSENT,
         .value = nan(""),
         .tolerance = nan(""),
@@ -265,13 +219,6 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
         .role = MT_ROLE_VERIFIES,
         .addr = addr,
     };
-}
-
-mt_study_response mt_study_response_default(mt_addr addr)
-{
-    return (mt_study_response){.configuration = MT_ABSENT,
-                               .response_limit = mt_response_limit_default(),
-                               .addr = addr};
 }
 
 #define NAME_CASE(id, name) \

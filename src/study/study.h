@@ -11,9 +11,8 @@
 #include "measurement/measurement.h"
 #include "model/count_box.h"
 #include "model/model.h"
-#include "study/goal_kinds.h"
+#include "study/goals.h"
 #include "study/objective_kinds.h"
-#include "study/response_limit.h"
 
 /*
  * A study of a model: variables, goals, objective, references, published values. Filled by a
@@ -22,10 +21,6 @@
  * those that must follow the design: limit.expression, objective.expression, published.quantity
  * (mt_expr). NaN (nan("")) stands for "not given" in the doubles below.
  */
-
-/* Default tolerance of a goal, in percent of its limit or target: far below what an engineer
- * can build, far above rounding. */
-#define MT_DEFAULT_TOLERANCE_PERCENT 1e-4
 
 typedef struct mt_variable {
     mt_name parameter_name;
@@ -43,56 +38,6 @@ typedef struct mt_variable {
     const mt_unit *shown;     /* unit in which its numbers are shown; NULL: SI; by finish */
     mt_addr addr;
 } mt_variable;
-
-typedef struct mt_mode_ref {
-    int index; /* 1-based vibration mode; 0: by name */
-    mt_name mode_name;
-    int named; /* resolved named mode of the model; MT_ABSENT: by index */
-    mt_addr addr;
-} mt_mode_ref;
-
-/* The bands that modes avoid, and how the search treats them. */
-typedef struct mt_avoid {
-    mt_bands_source source;
-    /* number of modes on each side of a band that have constraints of their own, so that
-     * neighbours which exchange their order are seen */
-    int cluster;
-    mt_bands bands; /* of the source; by finish */
-} mt_avoid;
-
-typedef struct mt_goal {
-    mt_goal_type type; /* kinds: goal_kinds.h */
-    /* one ("configuration") or several ("configurations"); none given: the model's only one */
-    mt_name_list configuration_names;
-    int n_configurations;
-    int *configurations;
-    mt_mode_ref mode;
-    union {
-        struct {
-            double equals;   /* "target_hz", "equals" */
-            double at_least; /* in the unit of the kind of goal (goal_kinds.h) */
-            double at_most;
-            double tolerance_percent;
-            /* NaN: a limit or target to meet; else the weight of a residual of the misfit */
-            double weight;
-            double length; /* length at which an angle counts as an arc [m]; NaN: the model's */
-        };
-        double number[MT_GOAL_NUMBERS];
-    };
-    bool tolerance_given; /* false: tolerance_percent is the default */
-    /* of shape and mac; of frequency: the target is that mode's frequency instead of
-     * "target_hz". reference_name.addr equals addr where not given */
-    mt_name reference_name;
-    int reference;
-    int reference_mode; /* 1-based; 0: same index as mode */
-    mt_expr expression; /* limit */
-    const char *expression_text;
-    mt_avoid *avoid; /* of avoid goals, in the study's arena; else NULL */
-    /* of goals about ports, in the study's arena; else NULL */
-    mt_response_limit *response_limit;
-    const char *description;
-    mt_addr addr;
-} mt_goal;
 
 /* Modes to compare with: another model's configuration, or measured values at sensors. */
 typedef struct mt_measured_mode {
@@ -171,16 +116,6 @@ typedef struct mt_published {
     mt_addr addr;
 } mt_published;
 
-/* A response that the result shows of every design. */
-typedef struct mt_study_response {
-    mt_name configuration_name;
-    int configuration;
-    mt_response_limit response_limit; /* ports and frequencies; a profile, where there is one */
-    const char *description;
-    const char *source;
-    mt_addr addr;
-} mt_study_response;
-
 /* A trade study: one or two quantities take each of their values (two: all pairs), and the
  * study is solved for its best design at each. */
 typedef enum mt_vary_kind {
@@ -198,7 +133,7 @@ typedef struct mt_vary {
     int goal;      /* goal: index in the study's goals */
     /* goal: name of its number; NULL: invalid, which the reader has noted */
     const char *member;
-    mt_goal_slot slot; /* slot of that number; by finish */
+    mt_goal_slot slot; /* that number; MT_SLOT_NONE: the goal has none; by finish */
     int n_values;
     double *values;   /* [n_values] in the order given; in the unit of what varies */
     const char *text; /* "upper bound of M_SAU", "target_hz of goal 1": by finish */
@@ -327,14 +262,8 @@ mt_status mt_study_new(mt_study **out, mt_err *err);
 /* Records with every optional member at "not given" (NaN, MT_ABSENT) or its default, and all
  * addresses at addr. */
 mt_variable mt_variable_default(mt_addr addr);
-mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
-mt_avoid mt_avoid_default(void);
-mt_response_limit mt_response_limit_default(void);
-/* Tolerance of a goal as a fraction: tolerance_percent / 100. */
-double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
 mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
-mt_study_response mt_study_response_default(mt_addr addr);
 /*
  * Resolve names and check the study, noting all problems at once: unknown names with "did you
  * mean", bounds in the wrong order, catalogue and bounds together, duplicate variables, goals
@@ -357,7 +286,7 @@ const mt_unit *mt_study_shown(const mt_study *study, mt_dimension dimension);
  * shown: that of a parameter in it, else the study's. NULL: SI, or another dimension. The
  * expression itself is in SI. */
 const mt_unit *mt_study_requirement_unit(const mt_study *study, const mt_expr *e);
-/* The unit of a goal's numbers, "" for none: of its kind (goal_kinds.h), of its ports, or the
+/* The unit of a goal's numbers, "" for none: of its kind (goals.h), of its ports, or the
  * SI unit of its expression, where parameters in it are shown in another. */
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* Index by name; MT_ABSENT where there is none. */
@@ -365,9 +294,7 @@ int mt_study_find_reference(const mt_study *study, const char *name);
 int mt_study_find_measurement(const mt_study *study, const char *name);
 /* True where a goal avoids bands. */
 bool mt_study_has_bands(const mt_study *study);
-/* True where the goal limits a forced vibration from above; mt_study_has_limits: where any goal
- * of the study does. */
-bool mt_goal_is_limit(const mt_goal *goal);
+/* True where a goal limits a forced vibration from above. */
 bool mt_study_has_limits(const mt_study *study);
 /* True where the objective takes the goal's limit as its scale. The goal then requires nothing
  * else. */

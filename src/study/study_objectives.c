@@ -66,7 +66,7 @@ static void check_misfit(mt_study_check *c)
     bool weighted = false;
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const goal = &s->goals[i];
-        const mt_addr weight = mt_check_goal_addr(c, goal, MT_SLOT_WEIGHT);
+        const mt_addr weight = mt_check_goal_addr(c, goal, "weight");
         if (!MT_HAS(goal->weight) && weight == goal->addr) {
             continue;
         }

@@ -16,16 +16,10 @@ void mt_study_check_references(mt_study_check *c);   /* study_references.c */
 void mt_study_check_measurements(mt_study_check *c); /* study_measurements.c */
 /* the measurement that a goal is compared with; called by mt_study_check_response_limit */
 void mt_study_check_measured(mt_study_check *c, mt_response_limit *s, mt_addr goal);
-void mt_study_check_variables(mt_study_check *c); /* study_variables.c */
-void mt_study_check_goals(mt_study_check *c);     /* study_goals.c */
-/* study_avoid.c; called by mt_study_check_goals */
-void mt_study_check_avoid(mt_study_check *c, mt_goal *goal);
-/* study_response_limit.c; called by mt_study_check_goals */
-void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal);
+void mt_study_check_variables(mt_study_check *c);  /* study_variables.c */
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
-void mt_study_check_responses(mt_study_check *c);  /* study_responses.c */
 void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the checks */
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 void mt_study_check_bounds(mt_study_check *c); /* study_bounds.c; where there are no errors */
@@ -67,11 +61,5 @@ void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
 /* True where a number was given, even one that could not be read: the object then has the
  * member. */
 bool mt_check_given(const mt_study_check *c, double value, mt_addr object, const char *member);
-/* The address of a member of the goal (study_goals.c); the goal's own where it has none, or its
- * kind knows none. */
-mt_addr mt_check_goal_addr(const mt_study_check *c, const mt_goal *goal, mt_goal_slot slot);
-/* Check that the two frequencies of the range, "band_hz" of its owner, ascend
- * (study_response_limit.c). */
-void mt_check_range(mt_study_check *c, const mt_response_limit *s, mt_addr owner);
 
 #endif

@@ -101,19 +101,19 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
     }
 }
 
-/* The member of the goal that varies; NULL where the goal has none of this name, or no number
- * there to begin with. */
-static const mt_goal_member *member_of(const mt_goal *goal, const char *name)
+/* The number of the goal that varies; MT_SLOT_NONE where the goal has none of this name, or no
+ * number there to begin with. */
+static mt_goal_slot slot_of(const mt_goal *goal, const char *name)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
-    for (int i = 0; i < kind->n; i++) {
-        const mt_goal_member *const m = &kind->members[i];
-        if (strcmp(m->name, name) == 0 && mt_goal_may_vary(m)) {
-            const bool none = m->slot < MT_GOAL_NUMBERS && !MT_HAS(goal->number[m->slot]);
-            return none ? NULL : m;
+    for (int i = 0; i < MT_SLOT_NONE; i++) {
+        const char *const member = mt_goal_member_name(kind, (mt_goal_slot)i);
+        if (member != NULL && strcmp(member, name) == 0) {
+            const bool none = i < MT_GOAL_NUMBERS && !MT_HAS(goal->number[i]);
+            return none ? MT_SLOT_NONE : (mt_goal_slot)i;
         }
     }
-    return NULL;
+    return MT_SLOT_NONE;
 }
 
 static void vary_goal(mt_study_check *c, const mt_vary *v)
@@ -122,15 +122,15 @@ static void vary_goal(mt_study_check *c, const mt_vary *v)
         return; /* noted by who filled the study */
     }
     const mt_goal *const goal = &c->study->goals[v->goal];
-    const mt_goal_member *const m = member_of(goal, v->member);
-    if (m == NULL) {
+    if (v->slot == MT_SLOT_NONE) {
         mt_diag_error(c->diags, v->addr, "the goal has no \"%s\" that could vary", v->member);
         return;
     }
+    const mt_key *const m = mt_goal_member(mt_goal_kind_of(goal->type), v->slot);
     for (int i = 0; i < v->n_values; i++) {
         /* limits on both sides must leave room, whichever of them varies; both: check_sides */
-        const bool crosses = (m->slot == MT_SLOT_AT_LEAST && v->values[i] >= goal->at_most) ||
-                             (m->slot == MT_SLOT_AT_MOST && v->values[i] <= goal->at_least);
+        const bool crosses = (v->slot == MT_SLOT_AT_LEAST && v->values[i] >= goal->at_most) ||
+                             (v->slot == MT_SLOT_AT_MOST && v->values[i] <= goal->at_least);
         if (!mt_possible_is(&mt_possible_of[m->possible], v->values[i]) ||
             (crosses && other_side(c, v) == NULL)) {
             mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "values"),
@@ -242,8 +242,7 @@ void mt_study_check_trade(mt_study_check *c)
     for (int i = 0; i < trade->n_vary; i++) { /* before anything is compared */
         mt_vary *const v = &trade->vary[i];
         const bool known = v->goal >= 0 && v->goal < s->n_goals && v->member != NULL;
-        const mt_goal_member *const m = known ? member_of(&s->goals[v->goal], v->member) : NULL;
-        v->slot = m != NULL ? m->slot : MT_SLOT_TYPE;
+        v->slot = known ? slot_of(&s->goals[v->goal], v->member) : MT_SLOT_NONE;
     }
     for (int i = 0; i < trade->n_vary; i++) {
         check_vary(c, &trade->vary[i]);

@@ -193,8 +193,7 @@ static void warn_trade(const mt_study_check *c, mt_warning_list *out, const mt_t
 static bool asks_frequency(const mt_goal *goal)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
-    return mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0 &&
-           mt_goal_member_at(kind, MT_SLOT_REFERENCE) >= 0;
+    return mt_goal_member(kind, MT_SLOT_EQUALS) != NULL && mt_goal_has(kind, "reference");
 }
 
 /* A measured frequency that a goal is to meet exactly, where other goals with references make
@@ -233,7 +232,7 @@ static void warn_shape(mt_warning_list *out, const mt_study *s, const mt_goal *g
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
     const int index = goal->reference_mode > 0 ? goal->reference_mode : goal->mode.index;
-    if (goal->reference == MT_ABSENT || mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0) {
+    if (goal->reference == MT_ABSENT || mt_goal_member(kind, MT_SLOT_EQUALS) != NULL) {
         return;
     }
     const mt_reference *const r = &s->references[goal->reference];

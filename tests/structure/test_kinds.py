@@ -6,7 +6,7 @@ from pathlib import Path
 
 from common import ROOT, c_files, code_only, verdict
 
-TABLES = {"GOAL": "src/study/goal_kinds.h", "OBJECTIVE": "src/study/objective_kinds.h"}
+TABLES = {"GOAL": "src/study/goals.h", "OBJECTIVE": "src/study/objective_kinds.h"}
 # what is meant where a kind is named all the same
 MEANT = {
     "MT_OBJECTIVE_NONE": None,  # that there is no objective may be asked anywhere

@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What makes bands to avoid: machines with their orders and gear meshes, rotors with their
- * harmonics, and the catalogue of aircraft that rotors may come from. */
+/* Goals of type "avoid": what makes bands (machines with orders and gear meshes, rotors with
+ * harmonics), the catalogue of aircraft that rotors may come from, and the checks. */
+#include "study/avoid.h"
+
 #include "study/read_priv.h"
+#include "study/study_priv.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "environment/rotor.h"
 #include "io/file.h"
+
+/* Machines */
 
 /* A bare number: times per turn, or of the mesh. */
 static void refuse_number(mt_study_reader *s, mt_addr at, char letter)
@@ -165,6 +171,8 @@ const mt_key_table mt_study_machine_keys = {
     .rules = "\"anyOf\": [{\"required\": [\"orders\"]}, {\"required\": [\"gears\"]}], "
              "\"dependencies\": {\"speed_range\": [\"speed_hz\"]}"};
 
+/* Rotors */
+
 static const double RPM_PER_HZ = 60.0;
 
 /* True where the text multiplies by rpm, as speeds in Hz do ("258*rpm", or meant so: "258
@@ -300,6 +308,145 @@ const mt_key_table mt_study_rotor_keys = {
     .rules = "\"not\": {\"anyOf\": [{\"required\": [\"aircraft\", \"blades\"]}, {\"required\": "
              "[\"aircraft\", \"tail\"]}]}"};
 
+/* The goal */
+
+static void read_bands(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_bands_source *const source = &((mt_goal_parts *)item)->avoid.source;
+    mt_items items = mt_reader_some_items(r, value, key->what);
+    source->intervals = mt_reader_room(r, &items, sizeof *source->intervals);
+    while (mt_items_next(&items)) {
+        double edges[2];
+        if (mt_read_study_pair(mt_study_reader_of(r), value, items.at, edges)) {
+            source->intervals[source->n_intervals++] =
+                (mt_band_hz){edges[0], edges[1], items.at};
+        }
+    }
+}
+
+/* Structs of the row's table and their number: one object, or the list of the row behind it,
+ * which goes before. A wrong one still counts. */
+static void read_sources(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    int *const n = (int *)(void *)((char *)item + key->other);
+    const bool list = key->type == MT_KEY_LIST;
+    const mt_addr several =
+        list ? value : mt_json_member(r->doc, ((mt_goal_parts *)item)->goal.addr, key[1].name);
+    if (!list && several != MT_NO_ADDR && mt_json_type_of(r->doc, several) == MT_JSON_ARRAY) {
+        return; /* avoid_finish notes that there are both */
+    }
+    mt_items items =
+        list ? mt_reader_some_items(r, value, key->what) : mt_reader_one_or_items(r, value);
+    char *const room = mt_reader_room(r, &items, key->of->size);
+    while (mt_items_next(&items)) {
+        if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
+            (void)mt_members_read(r, items.at, key->of, room + ((size_t)*n * key->of->size));
+            (*n)++;
+        }
+    }
+    memcpy((char *)item + key->at, &room, sizeof room);
+}
+
+#define THIS mt_goal_parts
+/* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
+#define SOURCES(of, m, n) \
+    MT_M_TO(read_sources, of *, avoid.source.m), .other = MT_M_PLACE(int, avoid.source.n)
+/* NOLINTEND(bugprone-macro-parentheses) */
+static const mt_key AVOID[] = {
+    MT_GOAL_ROWS("The goal is met within this, in percent of a band's edge."),
+    MT_GOAL_CONFIGURATION_ROWS,
+    {.name = "bands_hz",
+     .type = MT_KEY_NUMBERS,
+     MT_M_ROW(BAND),
+     .read = read_bands,
+     .what = "the list of bands",
+     .says = "Bands [lower, upper] [Hz].",
+     .examples = "[[[15.5, 18.9]]]",
+     .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "
+               "\"#/definitions/pair\"}"},
+    {.name = "rotor",
+     .type = MT_KEY_OBJECT,
+     SOURCES(mt_rotor, rotors, n_rotors),
+     .of = &mt_study_rotor_keys},
+    {.name = "rotors",
+     .type = MT_KEY_LIST,
+     SOURCES(mt_rotor, rotors, n_rotors),
+     .what = "the list of rotors",
+     .of = &mt_study_rotor_keys,
+     .says = "Several rotors."},
+    {.name = "machine",
+     .type = MT_KEY_OBJECT,
+     SOURCES(mt_machine, machines, n_machines),
+     .of = &mt_study_machine_keys},
+    {.name = "machines",
+     .type = MT_KEY_LIST,
+     SOURCES(mt_machine, machines, n_machines),
+     .what = "the list of machines",
+     .of = &mt_study_machine_keys,
+     .says = "Several machines."},
+    MT_S_NUMBER("margin_percent", false, avoid.source.margin_percent, MARGIN,
+                "Separation margin on both sides of every band, in percent of its edges: of "
+                "\"bands_hz\", and of rotors and machines that give none.",
+                .otherwise = "0"),
+    MT_S_NUMBER("up_to_hz", false, avoid.source.up_to_hz, POSITIVE,
+                "Bands are cut off at this frequency [Hz]; modes above it are free."),
+    MT_M_COUNT("cluster", false, avoid.cluster, 1, MT_MAX_CLUSTER,
+               "Number of neighbouring modes on each side of a band that the search constrains "
+               "individually.",
+               .otherwise = "2"),
+};
+#undef THIS
+
+static void avoid_defaults(void *item, mt_addr addr, int which)
+{
+    (void)addr;
+    (void)which;
+    ((mt_goal_parts *)item)->avoid = (mt_avoid){
+        .source = {.margin_percent = nan(""), .up_to_hz = nan("")},
+        .cluster = MT_DEFAULT_CLUSTER,
+    };
+}
+
+static void avoid_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    static const char *const alone[][2] = {{"rotor", "rotors"}, {"machine", "machines"}};
+    static const char *const makes[] = {"bands_hz", "rotor", "rotors", "machine", "machines"};
+    mt_goal_parts *const parts = item;
+    bool any = false;
+    mt_goal_finish(r, o, which, item);
+    for (int i = 0; i < MT_COUNT(makes); i++) {
+        any = any || mt_object_has(r, o, makes[i]);
+    }
+    if (!any) {
+        (void)mt_object_one_of(r, o, makes[0], MT_COUNT(makes));
+    }
+    for (int i = 0; i < MT_COUNT(alone); i++) {
+        if (mt_object_has(r, o, alone[i][0]) && mt_object_has(r, o, alone[i][1])) {
+            (void)mt_object_one_of(r, o, alone[i][0], 2);
+        }
+    }
+    parts->goal.avoid = mt_arena_alloc(r->mem, 1, sizeof parts->avoid);
+    if (parts->goal.avoid != NULL) {
+        *parts->goal.avoid = parts->avoid;
+    }
+}
+
+const mt_key_table mt_goal_avoid_keys = {
+    .what = "goal_avoid",
+    .keys = AVOID,
+    .n = MT_COUNT(AVOID),
+    .defaults = avoid_defaults,
+    .finish = avoid_finish,
+    .says = "Forbidden frequency bands: every mode keeps clear of them. Bands that overlap are "
+            "merged.",
+    .rules = "\"anyOf\": [{\"required\": [\"bands_hz\"]}, {\"required\": [\"rotor\"]}, "
+             "{\"required\": [\"rotors\"]}, {\"required\": [\"machine\"]}, {\"required\": "
+             "[\"machines\"]}], \"allOf\": [{" MT_GOAL_ONE_OR_SEVERAL
+             "}, {\"not\": {\"required\": [\"rotor\", \"rotors\"]}}, {\"not\": "
+             "{\"required\": [\"machine\", \"machines\"]}}]"};
+
+/* The catalogue of aircraft */
+
 static bool needs_catalogue(const mt_study *study)
 {
     for (int i = 0; i < study->n_goals; i++) {
@@ -369,4 +516,194 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
         load_study_aircraft(s, path, file, &s->files);
     }
     free(file);
+}
+
+/* Checks */
+
+static void check_intervals(mt_study_check *c, const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_intervals; i++) {
+        const mt_band_hz *const band = &source->intervals[i];
+        if (band->lower_hz >= band->upper_hz) {
+            mt_diag_error(c->diags, band->addr, "the band's end (%g Hz) is not above %g Hz",
+                          band->upper_hz, band->lower_hz);
+        }
+    }
+}
+
+/* Warn, also in the result, that an unconfirmed value is used. */
+static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
+                             const mt_aircraft *aircraft)
+{
+    mt_rotor_warning warning_list[MT_ROTOR_WARNINGS];
+    const int n = mt_rotor_warnings(rotor, aircraft, warning_list);
+    for (int i = 0; i < n; i++) {
+        const mt_rotor_warning *const d = &warning_list[i];
+        mt_diag_warning(c->diags, rotor->aircraft.addr, "%s: the %s (%s) is unconfirmed",
+                        rotor->aircraft.s, d->what, d->value->text);
+        mt_check_warn_result(
+            c, mt_arena_printf(&c->study->mem,
+                               "%s: the %s (%s) is unconfirmed (source needed: %s)",
+                               rotor->aircraft.s, d->what, d->value->text, d->value->source));
+    }
+}
+
+static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *rotor)
+{
+    const mt_aircraft *const aircraft = mt_check_aircraft(c, rotor->aircraft);
+    if (aircraft != NULL) {
+        mt_rotor_take(rotor, aircraft);
+        warn_unconfirmed(c, rotor, aircraft);
+    }
+    if (aircraft != NULL || rotor->aircraft.addr == rotor->addr) {
+        /* else the aircraft is wrong, which says enough */
+        mt_rotor_check_harmonics(rotor, aircraft, c->diags);
+    }
+    mt_rotor_check_range(rotor, c->diags);
+    const double margin =
+        MT_HAS(rotor->margin_percent) ? rotor->margin_percent : avoid->source.margin_percent;
+    if (rotor->range_lower == rotor->range_upper && !(margin > 0.0)) {
+        mt_diag_error(c->diags, rotor->addr,
+                      "the bands have no width: give \"speed_range\" or \"margin_percent\"");
+    }
+}
+
+static void check_orders(mt_study_check *c, const mt_order *orders, int n)
+{
+    if (n > 0 && mt_rotor_too_many(c->diags, n, orders[0].addr, "orders")) {
+        return;
+    }
+    for (int i = 1; i < n; i++) {
+        for (int k = 0; k < i; k++) {
+            if (orders[k].thousandths == orders[i].thousandths) {
+                mt_diag_error(c->diags, orders[i].addr, "order \"%s\" is given twice",
+                              orders[i].text);
+                break;
+            }
+        }
+    }
+}
+
+static void check_gear(mt_study_check *c, const mt_gear *gear)
+{
+    double least = 1.0;
+    check_orders(c, gear->orders, gear->n_orders);
+    for (int i = 0; i < gear->n_orders; i++) {
+        const double times = (double)gear->orders[i].thousandths / 1000.0;
+        least = i == 0 ? times : fmin(least, times);
+    }
+    if (gear->teeth > 0 && !(least * gear->teeth > gear->sidebands)) {
+        mt_diag_error(c->diags, mt_diag_member(c->diags, gear->addr, "sidebands"),
+                      "sideband %d of a mesh of %g per turn does not lie above 0 Hz",
+                      gear->sidebands, least * gear->teeth);
+    }
+}
+
+static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_machine *machine)
+{
+    const double lower = mt_machine_speed_hz(machine, 0);
+    const double upper = mt_machine_speed_hz(machine, 1);
+    if (!(machine->speed_hz <= 0.0) && lower > upper) {
+        mt_diag_error(c->diags, mt_machine_range_addr(machine, c->diags),
+                      "the range of speeds (%g to %g Hz) must be ascending", lower, upper);
+    }
+    check_orders(c, machine->orders, machine->n_orders);
+    for (int i = 0; i < machine->n_gears; i++) {
+        check_gear(c, &machine->gears[i]);
+    }
+    if (lower == upper && !(mt_bands_margin(&avoid->source, machine->margin_percent) > 0.0)) {
+        mt_diag_error(c->diags, machine->addr,
+                      "the bands have no width: give a range of speeds or \"margin_percent\"");
+    }
+}
+
+/* True where the rotor's speed is known. A catalogue that could not be read (noted) leaves
+ * rotors without a speed. */
+static bool has_rotor_speeds(const mt_bands_source *source)
+{
+    for (int i = 0; i < source->n_rotors; i++) {
+        if (!MT_HAS(source->rotors[i].speed_hz)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void make_bands(mt_study_check *c, const mt_goal *goal)
+{
+    mt_avoid *const avoid = goal->avoid;
+    mt_study *const s = c->study;
+    if (mt_bands_make(&avoid->source, nan(""), &s->mem, &avoid->bands, NULL) != MT_OK) {
+        return; /* as the arena knows */
+    }
+    if (avoid->bands.n == 0) {
+        mt_diag_error(c->diags, mt_diag_member(c->diags, goal->addr, "up_to_hz"),
+                      "no band lies below up_to_hz (%g)", avoid->source.up_to_hz);
+    }
+    for (int i = 0; i < avoid->bands.n_notes; i++) {
+        mt_check_warn_result(c, mt_arena_printf(&s->mem, "/goals/%d: %s",
+                                                (int)(goal - s->goals), avoid->bands.notes[i]));
+    }
+}
+
+/* Warn where the name is that of a body of the model: its modes are those of the mechanism at
+ * rest. */
+static void warn_spin(mt_study_check *c, const mt_goal *goal, const char *name)
+{
+    const mt_model *const model = c->study->model;
+    for (int i = 0; name != NULL && i < model->n_bodies; i++) {
+        if (strcmp(model->bodies[i].name.s, name) == 0) {
+            mt_check_warn_result(
+                c, mt_arena_printf(&c->study->mem,
+                                   "/goals/%d: body \"%s\" turns, and the modes are those of "
+                                   "the mechanism at rest: without the gyroscopic and "
+                                   "centrifugal terms of what spins",
+                                   (int)(goal - c->study->goals), model->bodies[i].name.s));
+            return;
+        }
+    }
+}
+
+static void warn_spins(mt_study_check *c, const mt_goal *goal)
+{
+    const mt_bands_source *const source = &goal->avoid->source;
+    for (int i = 0; i < source->n_rotors; i++) {
+        warn_spin(c, goal, source->rotors[i].name);
+    }
+    for (int i = 0; i < source->n_machines; i++) {
+        const mt_machine *const m = &source->machines[i];
+        warn_spin(c, goal, m->name);
+        for (int k = 0; k < m->n_gears; k++) {
+            warn_spin(c, goal, m->gears[k].name);
+        }
+    }
+}
+
+void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
+{
+    mt_avoid *const avoid = goal->avoid;
+    if (avoid == NULL) {
+        mt_diag_error(c->diags, goal->addr, "the goal names no bands");
+        return;
+    }
+    check_intervals(c, &avoid->source);
+    /* several rotors or machines without a name are told apart by number */
+    for (int i = 0; i < avoid->source.n_rotors; i++) {
+        mt_rotor *const rotor = &avoid->source.rotors[i];
+        if (avoid->source.n_rotors > 1 && rotor->name == NULL && rotor->aircraft.s == NULL) {
+            rotor->name = mt_arena_printf(&c->study->mem, "rotor %d", i + 1);
+        }
+        check_rotor(c, avoid, rotor);
+    }
+    for (int i = 0; i < avoid->source.n_machines; i++) {
+        mt_machine *const machine = &avoid->source.machines[i];
+        if (avoid->source.n_machines > 1 && machine->name == NULL) {
+            machine->name = mt_arena_printf(&c->study->mem, "machine %d", i + 1);
+        }
+        check_machine(c, avoid, machine);
+    }
+    if (c->diags->errors == 0 && has_rotor_speeds(&avoid->source)) {
+        make_bands(c, goal);
+        warn_spins(c, goal);
+    }
 }
