@@ -14,7 +14,7 @@ typedef struct mt_price {
 
 /*
  * The operations of a kind of objective, one file for each kind (objective_<kind>.c); its names
- * in files and results, and its properties, are in study/objective_kinds.h. The search
+ * in files and results, and its properties, are in study/objectives.h. The search
  * minimises its value f.
  */
 typedef struct mt_objective_ops {

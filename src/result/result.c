@@ -2,7 +2,7 @@
 #include "result/result.h"
 
 #include "study/goals.h"
-#include "study/objective_kinds.h"
+#include "study/objectives.h"
 
 /* What each record holds, in the order of result.json. */
 

@@ -3,9 +3,6 @@
  * harmonics), the catalogue of aircraft that rotors may come from, and the checks. */
 #include "study/avoid.h"
 
-#include "study/read_priv.h"
-#include "study/study_priv.h"
-
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,6 +10,8 @@
 
 #include "environment/rotor.h"
 #include "io/file.h"
+#include "study/check.h"
+#include "study/reader.h"
 
 /* Machines */
 
@@ -548,9 +547,24 @@ static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
     }
 }
 
+/* The aircraft of that name. NULL where the name is absent or unknown (noted, unless the
+ * catalogue itself could not be read). */
+static const mt_aircraft *find_aircraft(mt_study_check *c, mt_name name)
+{
+    const mt_aircraft_list *const list = &c->study->aircraft;
+    if (name.s == NULL) {
+        return NULL;
+    }
+    const mt_aircraft *const found = mt_aircraft_find(list, name.s);
+    if (found == NULL && list->n > 0) {
+        mt_check_unknown_name(c, name, "aircraft", list->items, list->n, sizeof *list->items);
+    }
+    return found;
+}
+
 static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *rotor)
 {
-    const mt_aircraft *const aircraft = mt_check_aircraft(c, rotor->aircraft);
+    const mt_aircraft *const aircraft = find_aircraft(c, rotor->aircraft);
     if (aircraft != NULL) {
         mt_rotor_take(rotor, aircraft);
         warn_unconfirmed(c, rotor, aircraft);

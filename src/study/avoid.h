@@ -3,6 +3,7 @@
 #define STUDY_AVOID_H
 
 #include "environment/bands.h"
+#include "io/members.h"
 
 /* The bands that modes avoid, and how the search treats them. */
 typedef struct mt_avoid {
@@ -12,6 +13,11 @@ typedef struct mt_avoid {
     int cluster;
     mt_bands bands; /* of the source; by finish */
 } mt_avoid;
+
+extern const mt_key_table mt_study_rotor_keys;
+extern const mt_key_table mt_study_tail_keys;
+extern const mt_key_table mt_study_machine_keys;
+extern const mt_key_table mt_study_gear_keys;
 
 struct mt_goal;
 struct mt_study_check;

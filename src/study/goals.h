@@ -98,6 +98,7 @@ typedef struct mt_goal_kind {
     const mt_key_table *members;
 } mt_goal_kind;
 
+struct mt_study;
 const mt_goal_kind *mt_goal_kind_of(mt_goal_type type);
 /* True where goals of the kind have the member. */
 bool mt_goal_has(const mt_goal_kind *kind, const char *member);
@@ -109,8 +110,15 @@ const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
 double mt_measure_unit(mt_goal_measure measure, double asked);
 /* Tolerance of a goal as a fraction: tolerance_percent / 100. */
 double mt_goal_tolerance(const mt_goal *goal);
+/* The unit of a goal's numbers, "" for none: of its kind, of its ports, or the SI unit of its
+ * expression, where parameters in it are shown in another. */
+const char *mt_study_goal_unit(const struct mt_study *study, const mt_goal *goal);
 /* True where the goal limits a forced vibration from above. */
 bool mt_goal_is_limit(const mt_goal *goal);
+/* True where a goal avoids bands. */
+bool mt_study_has_bands(const struct mt_study *study);
+/* True where a goal limits a forced vibration from above. */
+bool mt_study_has_limits(const struct mt_study *study);
 
 /*
  * The tables of members. All fill an mt_goal_parts, of which the goal keeps what its kind is
@@ -153,9 +161,5 @@ struct mt_study_reader;
 struct mt_study_check;
 void mt_read_study_goals(struct mt_study_reader *s, mt_addr list);
 void mt_study_check_goals(struct mt_study_check *c);
-/* The address of a member of the goal; the goal's own where it has none, or its kind knows
- * none. */
-mt_addr mt_check_goal_addr(const struct mt_study_check *c, const mt_goal *goal,
-                           const char *member);
 
 #endif

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/read.h"
 
-#include "study/read_priv.h"
-
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,8 +10,10 @@
 #include "io/json_print.h"
 #include "io/read_units.h"
 #include "model/values.h"
+#include "study/check.h"
+#include "study/reader.h"
 
-enum { MAX_RECOMMENDATIONS = 1000 };
+enum { MAX_RECOMMENDATIONS = 1000, DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
 
 #define THIS mt_search
 static const mt_key SEARCH[] = {
@@ -231,94 +231,6 @@ const mt_schema_type *mt_study_types(int *n)
     return types;
 }
 
-void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256)
-{
-    mt_study *const study = s->study;
-    mt_input_file *const inputs =
-        mt_arena_alloc(&study->mem, (size_t)study->n_inputs + 1, sizeof *inputs);
-    if (inputs == NULL) {
-        return;
-    }
-    for (int i = 0; i < study->n_inputs; i++) {
-        inputs[i] = study->inputs[i];
-    }
-    mt_input_file *const added = &inputs[study->n_inputs];
-    added->name = mt_arena_strdup(&study->mem, name);
-    added->sha256 = mt_arena_strdup(&study->mem, sha256);
-    study->inputs = inputs;
-    study->n_inputs++;
-}
-
-void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
-                                mt_status rc, const mt_err *why, bool told)
-{
-    if (mt_is_final(rc) || (rc == MT_E_SYSTEM && !mt_files_lack(&s->files.files, file))) {
-        s->failed = rc;
-        s->why = *why;
-        return;
-    }
-    if (!told) {
-        mt_diag_error(s->r.diags, path.addr, "%s", why->text);
-    }
-    if (s->failed == MT_OK) {
-        s->failed = MT_E_INPUT;
-        s->why = *why;
-    }
-}
-
-/* Load a model; overrides apply to the study's own only. */
-static mt_model *load_model(mt_study_reader *s, mt_name path)
-{
-    const mt_name own = s->study->model_path;
-    mt_io_options opt = s->files;
-    opt.asked = own.s != NULL && strcmp(own.s, path.s) == 0 ? opt.asked : NULL;
-    mt_err why = {.code = MT_OK};
-    mt_model *model = NULL;
-    const int told = s->model_messages->count;
-    char *const joined = mt_file_join(s->study->path, path.s);
-    if (joined == NULL) {
-        mt_arena_fail(s->r.mem);
-        return NULL;
-    }
-    const mt_status rc = mt_model_load(joined, &opt, &model, s->model_messages, &why);
-    if (rc == MT_OK) {
-        mt_read_study_note_input(s, path.s, model->sha256);
-    } else if (rc == MT_E_USAGE) { /* of what is asked for: of no file */
-        s->failed = rc;
-        s->why = why;
-    } else {
-        mt_read_study_note_failure(s, path, joined, rc, &why, s->model_messages->count > told);
-    }
-    free(joined);
-    return model;
-}
-
-const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
-{
-    mt_study *const study = s->study;
-    if (path.s == NULL) {
-        return NULL;
-    }
-    for (int i = 0; i < s->n_read; i++) {
-        if (strcmp(s->read[i].path.s, path.s) == 0) {
-            return s->read[i].model;
-        }
-    }
-    mt_study_file *const read =
-        mt_arena_grow(&study->mem, s->read, s->n_read, &s->cap_read, sizeof *read);
-    mt_model **const models = mt_arena_grow(&study->mem, study->models, study->n_models,
-                                            &study->cap_models, sizeof(mt_model *));
-    if (read == NULL || models == NULL) {
-        return NULL;
-    }
-    study->models = models;
-    models[study->n_models] = load_model(s, path);
-    read[s->n_read] = (mt_study_file){path, models[study->n_models]};
-    study->n_models += models[study->n_models] != NULL ? 1 : 0;
-    s->read = read;
-    return s->read[s->n_read++].model;
-}
-
 /* The study's own model, the names that expressions may use, and the parameters' values, before
  * anything that is measured in them. */
 static void read_model(mt_study_reader *s, mt_addr value)
@@ -348,7 +260,7 @@ static void read_model(mt_study_reader *s, mt_addr value)
     if (rc == MT_E_MEMORY) {
         mt_arena_fail(&study->mem); /* it was told, and rewound */
     }
-    study->original = rc == MT_OK ? values : NULL; /* mt_study_finish says what is wrong */
+    study->original = rc == MT_OK ? values : NULL; /* check_study says what is wrong */
 }
 
 static void note_asked(mt_study_reader *s, const mt_requested_number *number)
@@ -449,8 +361,8 @@ static void read_study_root(mt_study_reader *s)
     ask_search(s);
     study->variables =
         read_list(s, &o, "variables", &mt_study_variable_keys, &study->n_variables);
-    mt_read_study_references(s, mt_object_value(&o, "references"));
-    mt_read_study_measurements(s, mt_object_value(&o, "measurements"));
+    mt_read_study_references(s, mt_object_value(&o, "references"),
+                             mt_object_value(&o, "measurements"));
     mt_read_study_goals(s, mt_object_value(&o, "goals"));
     mt_read_study_aircraft(s, mt_object_value(&o, "aircraft"));
     mt_read_study_objectives(s, mt_object_value(&o, "objective"));
@@ -464,6 +376,68 @@ static void read_study_root(mt_study_reader *s)
         read_list(s, &o, "responses", &mt_study_response_keys, &study->n_responses);
     study->published =
         read_list(s, &o, "published", &mt_study_published_keys, &study->n_published);
+}
+
+/* Values at the original design, once: variables start from them. */
+static mt_status evaluate_original(mt_study_check *c, mt_err *err)
+{
+    mt_study *const s = c->study;
+    if (s->original != NULL) {
+        return MT_OK;
+    }
+    double *const values = mt_arena_f64(&s->mem, (size_t)c->model->n_parameters, 1);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    mt_err why = {.code = MT_OK};
+    const mt_status rc = mt_model_original_values(c->model, &s->mem, values, NULL, &why);
+    if (rc == MT_E_DOMAIN || rc == MT_E_INPUT) {
+        mt_diag_error(c->diags, s->model_path.addr, "%s: %s", s->model_path.s, why.text);
+        return MT_E_INPUT;
+    }
+    s->original = rc == MT_OK ? values : NULL;
+    return rc == MT_OK ? rc : mt_fail(err, rc, "%s", why.text);
+}
+
+/*
+ * Resolve names and check the study, noting all problems at once: unknown names with "did you
+ * mean", bounds in the wrong order, catalogue and bounds together, duplicate variables, goals
+ * without a requirement, weights without the objective "misfit" and the reverse, a variable
+ * overridden in every configuration that the goals name, references without a common sensor,
+ * mode indices below 1, ... Fill in defaults (configuration: the model's only one; objective:
+ * change; range of a variable), sort catalogues, look up aircraft, make the bands, set
+ * `original` and `warnings`. study->model is already set and finished. Bounds at or below 0 are
+ * allowed for a positive parameter (problem.h defines its change then). Returns MT_E_INPUT
+ * where diags holds errors, MT_E_MEMORY.
+ */
+static mt_status check_study(mt_study *study, mt_diags *diags, mt_err *err)
+{
+    mt_study_check c = {.study = study, .model = study->model, .diags = diags};
+    const mt_status rc = evaluate_original(&c, err);
+    if (rc != MT_OK && rc != MT_E_INPUT) {
+        return rc;
+    }
+    mt_study_check_references(&c);
+    mt_study_check_variables(&c);
+    mt_study_check_goals(&c);
+    mt_study_check_overrides(&c);
+    mt_study_check_objectives(&c);
+    mt_study_check_published(&c);
+    mt_study_check_responses(&c);
+    mt_study_check_trade(&c);
+    if (study->recommendations < 1) {
+        mt_diag_error(diags, mt_diag_member(diags, MT_JSON_ROOT, "recommendations"),
+                      "recommendations (%d) must be above 0", study->recommendations);
+    }
+    if (!mt_arena_failed(&study->mem)) {
+        mt_study_check_warnings(&c);
+    }
+    mt_study_check_bounds(&c);
+    MT_TRY(mt_arena_check(&study->mem, err));
+    MT_TRY(mt_arena_check(diags->mem, err));
+    if (diags->errors > 0) {
+        return mt_fail(err, MT_E_INPUT, "%s",
+                       diags->count > 0 ? diags->items[0].text : "the study has errors");
+    }
+    return MT_OK;
 }
 
 static mt_status read_document(mt_study_reader *s, mt_err *err)
@@ -481,7 +455,7 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
         return mt_fail(err, s->failed, "%s", s->why.text);
     }
     if (study->model != NULL) {
-        const mt_status rc = mt_study_finish(study, s->r.diags, err);
+        const mt_status rc = check_study(study, s->r.diags, err);
         if (rc != MT_OK && rc != MT_E_INPUT) {
             return rc;
         }
@@ -526,16 +500,30 @@ static mt_status read_study_text(mt_study_reader *s, const mt_file *file,
     return rc;
 }
 
+/* NULL: out of memory. */
+static mt_study *new_study(void)
+{
+    mt_study *const study = calloc(1, sizeof *study);
+    if (study == NULL || mt_arena_init(&study->mem, 0, NULL) != MT_OK) {
+        free(study);
+        return NULL;
+    }
+    study->warning_list = mt_warning_list_default(&study->mem);
+    study->recommendations = DEFAULT_RECOMMENDATIONS;
+    study->search = (mt_search){.seed = DEFAULT_SEED, .proof_s = nan("")};
+    study->weight_sensitivity = (mt_weight_sensitivity){.factor = nan(""), .addr = MT_NO_ADDR};
+    return study;
+}
+
 mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **out,
                         mt_diagnostics *messages, mt_err *err)
 {
     mt_file file = {0};
     char *root = NULL;
-    mt_study_reader s = {.failed = MT_OK};
+    mt_study_reader s = {.study = new_study(), .failed = MT_OK};
     *out = NULL;
-    mt_status rc = mt_study_new(&s.study, err);
-    if (rc != MT_OK) {
-        return rc;
+    if (s.study == NULL) {
+        return mt_fail_memory(err);
     }
     const mt_io_options none = {0};
     s.files = opt == NULL ? none : *opt;
@@ -546,7 +534,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     if (root == NULL && s.files.root == NULL) {
         mt_arena_fail(&s.study->mem);
     }
-    rc = mt_arena_check(&s.study->mem, err);
+    mt_status rc = mt_arena_check(&s.study->mem, err);
     if (rc != MT_OK) {
         goto done;
     }

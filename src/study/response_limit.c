@@ -7,16 +7,16 @@
  */
 #include "study/response_limit.h"
 
-#include "study/read_priv.h"
-#include "study/study_priv.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
-#include "environment/read_profile.h"
+#include "environment/aircraft.h"
+#include "environment/vibration.h"
 #include "io/shipped.h"
+#include "study/check.h"
+#include "study/reader.h"
 
 const char *const mt_response_limit_names[MT_RESPONSE_LIMIT_QUANTITIES] = {"response", "rms",
                                                                            "sine", "peak"};
@@ -505,7 +505,8 @@ static void find_unit(mt_study_check *c, mt_response_limit *s)
     }
 }
 
-void mt_check_range(mt_study_check *c, const mt_response_limit *s, mt_addr owner)
+/* Check that the two frequencies of the range, "band_hz" of its owner, ascend. */
+static void check_range(mt_study_check *c, const mt_response_limit *s, mt_addr owner)
 {
     if (s->lower_hz >= s->upper_hz) {
         mt_diag_error(c->diags, mt_diag_member(c->diags, owner, "band_hz"),
@@ -514,10 +515,16 @@ void mt_check_range(mt_study_check *c, const mt_response_limit *s, mt_addr owner
     }
 }
 
-/* The name of a number that the goal demands. */
-static const char *demanded(const mt_goal *goal, int slot)
+/* Note what is demanded but a limit from above. */
+static void refuse_demands(mt_study_check *c, const mt_goal *goal, const char *why)
 {
-    return mt_goal_member_name(mt_goal_kind_of(goal->type), (mt_goal_slot)slot);
+    static const char *const names[] = {
+        [MT_SLOT_EQUALS] = "target", [MT_SLOT_AT_LEAST] = "at_least"};
+    for (int k = 0; k < MT_COUNT(names); k++) {
+        if (MT_HAS(goal->number[k])) {
+            mt_diag_error(c->diags, mt_diag_member(c->diags, goal->addr, names[k]), "%s", why);
+        }
+    }
 }
 
 static void check_frequencies(mt_study_check *c, const mt_goal *goal,
@@ -530,14 +537,10 @@ static void check_frequencies(mt_study_check *c, const mt_goal *goal,
     if (single) {
         return;
     }
-    mt_check_range(c, s, goal->addr);
-    for (int k = MT_SLOT_EQUALS; k <= MT_SLOT_AT_LEAST; k++) {
-        if (MT_HAS(goal->number[k])) {
-            mt_diag_error(c->diags, mt_check_goal_addr(c, goal, demanded(goal, k)),
-                          "the largest response over a band is only limited from above: give "
-                          "\"at_most\", or one frequency, \"at_hz\"");
-        }
-    }
+    check_range(c, s, goal->addr);
+    refuse_demands(c, goal,
+                   "the largest response over a band is only limited from above: give "
+                   "\"at_most\", or one frequency, \"at_hz\"");
 }
 
 /* A profile says how the ground accelerates along one axis. */
@@ -545,7 +548,7 @@ static void check_input(mt_study_check *c, const mt_goal *goal, mt_response_limi
 {
     const mt_vibration *const v = s->profile;
     const bool absent =
-        s->input.s == NULL && mt_check_goal_addr(c, goal, "input") == goal->addr;
+        s->input.s == NULL && mt_diag_member(c->diags, goal->addr, "input") == goal->addr;
     if (absent && v->axis == MT_ABSENT) {
         mt_diag_error(c->diags, s->profile_name.addr,
                       "the profile \"%s\" names no axis: give \"input\", such as \"base.z\"",
@@ -579,13 +582,10 @@ static void check_profile(mt_study_check *c, const mt_goal *goal, mt_response_li
                       "the profile \"%s\" has no %s: \"quantity\": \"%s\" is always 0",
                       s->profile_name.s, lacks, mt_response_limit_names[s->quantity]);
     }
-    for (int k = MT_SLOT_EQUALS; k <= MT_SLOT_AT_LEAST && s->quantity != MT_RESPONSE_LIMIT_RMS;
-         k++) {
-        if (MT_HAS(goal->number[k])) {
-            mt_diag_error(c->diags, mt_check_goal_addr(c, goal, demanded(goal, k)),
-                          "the largest response to tones is only limited from above: give "
-                          "\"at_most\", or \"quantity\": \"rms\"");
-        }
+    if (s->quantity != MT_RESPONSE_LIMIT_RMS) {
+        refuse_demands(c, goal,
+                       "the largest response to tones is only limited from above: give "
+                       "\"at_most\", or \"quantity\": \"rms\"");
     }
 }
 
@@ -595,8 +595,9 @@ void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal)
     if (s == NULL) {
         return; /* memory is out */
     }
-    if (mt_goal_has(mt_goal_kind_of(goal->type), "measurement")) {
-        mt_study_check_measured(c, s, goal->addr);
+    if (s->measurement_name.s != NULL) {
+        s->measurement = mt_check_measurement(c, s->measurement_name);
+        check_range(c, s, goal->addr);
         return; /* its number is a distance, without a unit */
     }
     if (s->quantity == MT_RESPONSE_LIMIT_RESPONSE) {
@@ -616,6 +617,6 @@ void mt_study_check_responses(mt_study_check *c)
         r->configuration = r->configuration_name.s == NULL
                                ? mt_check_only_configuration(c, c->model, r->addr)
                                : mt_check_configuration(c, c->model, r->configuration_name);
-        mt_check_range(c, &r->response_limit, r->addr);
+        check_range(c, &r->response_limit, r->addr);
     }
 }

@@ -3,6 +3,7 @@
 #define STUDY_RESPONSE_LIMIT_H
 
 #include "environment/vibration.h"
+#include "io/members.h"
 
 /* The quantity of a forced vibration that a goal limits. */
 typedef enum mt_response_limit_quantity {
@@ -47,12 +48,12 @@ typedef struct mt_study_response {
     mt_addr addr;
 } mt_study_response;
 
+extern const mt_key_table mt_study_response_keys;
+
 struct mt_goal;
 struct mt_study_check;
 /* Check frequencies, profile and measurement of a goal about ports, and find its unit. */
 void mt_study_check_response_limit(struct mt_study_check *c, struct mt_goal *goal);
 void mt_study_check_responses(struct mt_study_check *c);
-/* Check that the two frequencies of the range, "band_hz" of its owner, ascend. */
-void mt_check_range(struct mt_study_check *c, const mt_response_limit *s, mt_addr owner);
 
 #endif

@@ -8,28 +8,6 @@
 #include "base/text.h"
 #include "io/json_print.h"
 
-enum { DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
-
-mt_status mt_study_new(mt_study **out, mt_err *err)
-{
-    *out = NULL;
-    mt_study *const study = calloc(1, sizeof *study);
-    if (study == NULL) {
-        return mt_fail_memory(err);
-    }
-    const mt_status rc = mt_arena_init(&study->mem, 0, err);
-    if (rc != MT_OK) {
-        free(study);
-        return rc;
-    }
-    study->warning_list = mt_warning_list_default(&study->mem);
-    study->recommendations = DEFAULT_RECOMMENDATIONS;
-    study->search = (mt_search){.seed = DEFAULT_SEED, .proof_s = nan("")};
-    study->weight_sensitivity = (mt_weight_sensitivity){.factor = nan(""), .addr = MT_NO_ADDR};
-    *out = study;
-    return MT_OK;
-}
-
 void mt_study_delete(mt_study *study)
 {
     if (study == NULL) {
@@ -44,33 +22,6 @@ void mt_study_delete(mt_study *study)
     mt_json_delete(study->document);
     mt_arena_free(&study->mem);
     free(study);
-}
-
-bool mt_study_has_bands(const mt_study *study)
-{
-    for (int g = 0; g < study->n_goals; g++) {
-        if (study->goals[g].avoid != NULL) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool mt_study_has_limits(const mt_study *study)
-{
-    for (int g = 0; g < study->n_goals; g++) {
-        if (mt_goal_is_limit(&study->goals[g])) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool mt_study_is_scale(const mt_study *study, const mt_goal *goal)
-{
-    const bool shakes =
-        study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_SHAKES);
-    return shakes && mt_goal_is_limit(goal);
 }
 
 bool mt_study_asks(const mt_study *study, int configuration)
@@ -125,15 +76,6 @@ const mt_unit *mt_study_requirement_unit(const mt_study *study, const mt_expr *e
     return NULL;
 }
 
-const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
-{
-    const mt_unit *const other = mt_study_requirement_unit(study, &goal->expression);
-    if (goal->response_limit != NULL) {
-        return goal->response_limit->unit;
-    }
-    return other != NULL ? other->si : mt_goal_kind_of(goal->type)->unit;
-}
-
 int mt_study_find_reference(const mt_study *study, const char *name)
 {
     for (int i = 0; i < study->n_references; i++) {
@@ -177,89 +119,55 @@ bool mt_study_locate(const mt_study *study, const char *text, int *line, int *co
     return at != MT_NO_ADDR;
 }
 
-mt_variable mt_variable_default(mt_addr addr)
-{
-    return (mt_variable){
-        .parameter = MT_ABSENT,
-        .lower = nan(""),
-        .upper = nan(""),
-        .weight = 1.0,
-        .scale = nan(""),
-        .range = nan(""),
-        .tolerance_percent = nan(""),
-        .original = nan(""),
-        .addr = addr,
-    };
-}
-
-mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
-{
-    return (mt_vary){
-        .kind = kind,
-        .variable = MT_ABSENT,
-        .parameter = MT_ABSENT,
-        .goal = MT_ABSENT,
-        .addr = addr,
-    };
-}
-
-mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
-{
-    return (mt_published){
-        .kind = kind,
-        .parameter = MT_ABSENT,
-        .configuration = MT_ABSENT,
-        .mode = {.named = MT_ABSENT},
-        .reference = MT_ABSENT,
-        .value = nan(""),
-        .tolerance = nan(""),
-        .tolerance_percent = nan(""),
-        .at_least = nan(""),
-        .at_most = nan(""),
-        .role = MT_ROLE_VERIFIES,
-        .addr = addr,
-    };
-}
-
-#define NAME_CASE(id, name) \
-    case id:                \
-        return name;
-
-const char *mt_role_name(mt_role role)
-{
-    switch (role) {
-        MT_ROLE_LIST(NAME_CASE)
-    case MT_ROLE_COUNT:
-        break;
-    }
-    return "unknown";
-}
-
-const char *mt_published_kind_name(mt_published_kind kind)
-{
-    switch (kind) {
-        MT_PUBLISHED_LIST(NAME_CASE)
-    case MT_PUBLISHED_KIND_COUNT:
-        break;
-    }
-    return "unknown";
-}
-
-bool mt_study_is_fit(const mt_study *study)
-{
-    bool fit = study->n_goals > 0 && study->n_objectives > 0 &&
-               mt_objective_is(study->objectives[0].type, MT_RESIDUALS);
-    for (int i = 0; i < study->n_goals; i++) {
-        fit = fit && MT_HAS(study->goals[i].weight);
-    }
-    return fit;
-}
-
-/* a study that was interrupted says nothing that could be published */
-#define STATUS_NAME(id, name) name,
-const char *const mt_study_status_names[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
-
 const char *mt_search_budget(const mt_search *s)
 {
     return s->by_solutions ? "max_modal_solutions" : "max_evaluations";
+}
+
+/* What users of the library read. */
+
+static const mt_variable *variable(const mt_study *study, int i)
+{
+    return study != NULL && i >= 0 && i < study->n_variables ? &study->variables[i] : NULL;
+}
+
+const char *mt_study_title(const mt_study *study)
+{
+    return study == NULL ? NULL : study->name;
+}
+
+const mt_model *mt_study_model(const mt_study *study)
+{
+    return study == NULL ? NULL : study->model;
+}
+
+int mt_study_variable_count(const mt_study *study)
+{
+    return study == NULL ? 0 : study->n_variables;
+}
+
+const char *mt_study_variable_name(const mt_study *study, int i)
+{
+    const mt_variable *const v = variable(study, i);
+    return v == NULL ? NULL : v->parameter_name.s;
+}
+
+double mt_study_variable_original(const mt_study *study, int i)
+{
+    const mt_variable *const v = variable(study, i);
+    return v == NULL ? nan("") : v->original;
+}
+
+double mt_study_variable_lower(const mt_study *study, int i)
+{
+    const mt_variable *const v = variable(study, i);
+    return v == NULL ? nan("") : v->n_catalogue > 0 ? v->catalogue[0] : v->lower;
+}
+
+double mt_study_variable_upper(const mt_study *study, int i)
+{
+    const mt_variable *const v = variable(study, i);
+    return v == NULL            ? nan("")
+           : v->n_catalogue > 0 ? v->catalogue[v->n_catalogue - 1]
+                                : v->upper;
 }

@@ -6,149 +6,24 @@
 
 #include "base/diagnostics.h"
 #include "environment/aircraft.h"
-#include "environment/bands.h"
 #include "io/json.h"
 #include "measurement/measurement.h"
 #include "model/count_box.h"
 #include "model/model.h"
 #include "study/goals.h"
-#include "study/objective_kinds.h"
+#include "study/objectives.h"
+#include "study/published.h"
+#include "study/references.h"
+#include "study/trade.h"
+#include "study/variables.h"
 
 /*
- * A study of a model: variables, goals, objective, references, published values. Filled by a
- * reader (io), checked by mt_study_finish, then immutable. Numbers of a study are expressions
- * of the model's parameters evaluated once at the original design (plain doubles here), except
- * those that must follow the design: limit.expression, objective.expression, published.quantity
- * (mt_expr). NaN (nan("")) stands for "not given" in the doubles below.
+ * A study of a model: variables, goals, objective, references, published values. Read and
+ * checked by mt_study_load ("by finish": by the checks), then immutable. Numbers of a study are
+ * expressions of the model's parameters evaluated once at the original design (plain doubles
+ * here), except those that must follow the design: limit.expression, objective.expression,
+ * published.quantity (mt_expr). NaN (nan("")) stands for "not given" in doubles.
  */
-
-typedef struct mt_variable {
-    mt_name parameter_name;
-    int parameter;
-    double lower; /* continuous: both bounds are required, lower < upper */
-    double upper;
-    int n_catalogue;   /* > 0: discrete */
-    double *catalogue; /* ascending after finish */
-    double weight;     /* weight of its change in the total change; default 1 */
-    /* scale of its change, (new - original)/scale; NaN: ln(new/original), or range */
-    double scale;
-    double range; /* scale of its change where the change has no logarithm; by finish */
-    double tolerance_percent; /* of a search over tolerances; NaN: none */
-    double original;          /* the model's value; by finish */
-    const mt_unit *shown;     /* unit in which its numbers are shown; NULL: SI; by finish */
-    mt_addr addr;
-} mt_variable;
-
-/* Modes to compare with: another model's configuration, or measured values at sensors. */
-typedef struct mt_measured_mode {
-    double frequency_hz; /* NaN: not given */
-    int n_values;
-    mt_name *channels; /* "sensor.direction" */
-    double *values;
-    mt_addr addr;
-} mt_measured_mode;
-
-typedef struct mt_reference {
-    mt_name name;
-    mt_name model_path;    /* as written; NULL: measured */
-    const mt_model *model; /* of the study's models; NULL: measured */
-    mt_name configuration_name;
-    int configuration;
-    int n_modes;
-    mt_measured_mode *modes;
-    const char *source;
-    mt_addr addr;
-} mt_reference;
-
-typedef struct mt_objective {
-    mt_objective_type type;
-    mt_expr expression;
-    const char *expression_text;
-    mt_name_list of; /* of mass: patterns of names of bodies, links, bars; none: all */
-    mt_addr addr;
-} mt_objective;
-
-#define MT_ROLE_LIST(X)                 \
-    X(MT_ROLE_VERIFIES, "verifies")     \
-    X(MT_ROLE_CALIBRATES, "calibrates") \
-    X(MT_ROLE_NOT_COMPARABLE, "not_comparable")
-#define MT_ROLE_ENUM(id, name) id,
-typedef enum mt_role { MT_ROLE_LIST(MT_ROLE_ENUM) MT_ROLE_COUNT } mt_role;
-#undef MT_ROLE_ENUM
-
-#define MT_PUBLISHED_LIST(X)               \
-    X(MT_PUBLISHED_PARAMETER, "parameter") \
-    X(MT_PUBLISHED_QUANTITY, "quantity")   \
-    X(MT_PUBLISHED_FREQUENCY, "frequency") \
-    X(MT_PUBLISHED_MAC, "mac")             \
-    X(MT_PUBLISHED_STATUS, "status")
-#define MT_PUBLISHED_ENUM(id, name) id,
-typedef enum mt_published_kind {
-    MT_PUBLISHED_LIST(MT_PUBLISHED_ENUM) MT_PUBLISHED_KIND_COUNT
-} mt_published_kind;
-#undef MT_PUBLISHED_ENUM
-
-typedef struct mt_published {
-    mt_published_kind kind;
-    mt_name parameter_name;
-    int parameter;
-    mt_expr quantity;
-    const char *quantity_text;
-    mt_name configuration_name; /* frequency, mac */
-    int configuration;
-    mt_mode_ref mode;
-    mt_name reference_name; /* mac */
-    int reference;
-    int reference_mode;
-    const char *status; /* "solved" | "compromise" | "infeasible" | "fitted" */
-    /* "design": "original": compared at the original design, not at the recommended one */
-    bool original;
-    /* compared within a tolerance; with limits it is only shown, and the limits are compared */
-    double value;
-    double tolerance; /* absolute */
-    double tolerance_percent;
-    double at_least;
-    double at_most;
-    mt_role role;
-    const char *source;
-    /* "label": its name in comparison tables; NULL: made from the other members */
-    const char *label;
-    mt_addr addr;
-} mt_published;
-
-/* A trade study: one or two quantities take each of their values (two: all pairs), and the
- * study is solved for its best design at each. */
-typedef enum mt_vary_kind {
-    MT_VARY_BOUND,    /* a bound of a variable */
-    MT_VARY_GOAL,     /* a number of a goal */
-    MT_VARY_PARAMETER /* a parameter that is no variable */
-} mt_vary_kind;
-
-typedef struct mt_vary {
-    mt_vary_kind kind;
-    mt_name name;  /* of the variable or parameter */
-    int variable;  /* bound: index in the study's variables */
-    bool upper;    /* bound: true for the upper one */
-    int parameter; /* parameter: of the model */
-    int goal;      /* goal: index in the study's goals */
-    /* goal: name of its number; NULL: invalid, which the reader has noted */
-    const char *member;
-    mt_goal_slot slot; /* that number; MT_SLOT_NONE: the goal has none; by finish */
-    int n_values;
-    double *values;   /* [n_values] in the order given; in the unit of what varies */
-    const char *text; /* "upper bound of M_SAU", "target_hz of goal 1": by finish */
-    mt_addr addr;
-} mt_vary;
-
-enum { MT_MAX_VARY = 2, MT_MAX_TRADE_POINTS = 10000 };
-
-typedef struct mt_trade {
-    int n_vary; /* 0: there is no trade study */
-    mt_vary vary[MT_MAX_VARY];
-    int n_objectives; /* 0 or 2: of the Pareto front */
-    mt_objective_type objectives[2];
-    mt_addr addr;
-} mt_trade;
 
 enum { MT_STARTS_MOST = 100000 };
 typedef struct mt_search {
@@ -256,26 +131,6 @@ typedef struct mt_study {
     mt_input_file *inputs;
 } mt_study;
 
-/* A reference may use the same mt_model as the study or another reference: mt_study_delete
- * frees each model once. */
-mt_status mt_study_new(mt_study **out, mt_err *err);
-/* Records with every optional member at "not given" (NaN, MT_ABSENT) or its default, and all
- * addresses at addr. */
-mt_variable mt_variable_default(mt_addr addr);
-mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
-mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
-/*
- * Resolve names and check the study, noting all problems at once: unknown names with "did you
- * mean", bounds in the wrong order, catalogue and bounds together, duplicate variables, goals
- * without a requirement, weights without the objective "misfit" and the reverse, a variable
- * overridden in every configuration that the goals name, references without a common sensor,
- * mode indices below 1, ... Fill in defaults (configuration: the model's only one; objective:
- * change; range of a variable), sort catalogues, look up aircraft, make the bands, set
- * `original` and `warnings`. study->model is already set and finished. Bounds at or below 0 are
- * allowed for a positive parameter (problem.h defines its change then). Returns MT_E_INPUT
- * where diags holds errors, MT_E_MEMORY.
- */
-mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
 /* The unit of numbers for this parameter of the study's model, in its file and for people: the
  * study's unit, else the parameter's own; NULL: SI. */
 const mt_unit *mt_study_unit(const mt_study *study, int parameter);
@@ -286,19 +141,8 @@ const mt_unit *mt_study_shown(const mt_study *study, mt_dimension dimension);
  * shown: that of a parameter in it, else the study's. NULL: SI, or another dimension. The
  * expression itself is in SI. */
 const mt_unit *mt_study_requirement_unit(const mt_study *study, const mt_expr *e);
-/* The unit of a goal's numbers, "" for none: of its kind (goals.h), of its ports, or the
- * SI unit of its expression, where parameters in it are shown in another. */
-const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* Index by name; MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
-int mt_study_find_measurement(const mt_study *study, const char *name);
-/* True where a goal avoids bands. */
-bool mt_study_has_bands(const mt_study *study);
-/* True where a goal limits a forced vibration from above. */
-bool mt_study_has_limits(const mt_study *study);
-/* True where the objective takes the goal's limit as its scale. The goal then requires nothing
- * else. */
-bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
 /* True where a goal names this configuration. */
 bool mt_study_asks(const mt_study *study, int configuration);
 /* The address of a member of an object of the study's file; the object's own without one. */
@@ -308,15 +152,5 @@ void mt_study_place_warning(const mt_study *study, mt_arena *mem, mt_warning *wa
 /* The line and column of the value that the text's leading JSON pointer ("/goals/2: ...")
  * names; false where the text begins with none, or the study comes from no file. */
 bool mt_study_locate(const mt_study *study, const char *text, int *line, int *column);
-/* The names in files: "verifies", "parameter". */
-const char *mt_role_name(mt_role role);
-const char *mt_published_kind_name(mt_published_kind kind);
-/* The possible values of a published `status`, in the order of mt_result_status; *n is their
- * number. */
-enum { MT_STUDY_STATUSES = MT_RESULT_INTERRUPTED };
-extern const char *const mt_study_status_names[];
-/* True where the objective is the misfit and every goal is a part of it: no goal then decides
- * whether a design is feasible. */
-bool mt_study_is_fit(const mt_study *study);
 
 #endif

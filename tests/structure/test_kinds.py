@@ -6,13 +6,13 @@ from pathlib import Path
 
 from common import ROOT, c_files, code_only, verdict
 
-TABLES = {"GOAL": "src/study/goals.h", "OBJECTIVE": "src/study/objective_kinds.h"}
+TABLES = {"GOAL": "src/study/goals.h", "OBJECTIVE": "src/study/objectives.h"}
 # what is meant where a kind is named all the same
 MEANT = {
     "MT_OBJECTIVE_NONE": None,  # that there is no objective may be asked anywhere
-    "MT_OBJECTIVE_EXPRESSION": ("src/study/read_objectives.c",),  # what is no word is an expression
+    "MT_OBJECTIVE_EXPRESSION": ("src/study/objectives.c",),  # what is no word is an expression
     "MT_OBJECTIVE_CHANGE": (  # the distance from the original design itself
-        "src/study/study_objectives.c",  # the objective where none is given
+        "src/study/objectives.c",  # the objective where none is given
         "src/search/relaxation.c",  # the nearest design
         "src/search/search_nearest.c",  # of optima that are as good
         "src/search/search.c", "src/search/mode_placements.c",  # what no goal settles stays at the original

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "study/catalogue.h"
+#include "study/variables.h"
 
 enum { ROOM = MT_MAX_CATALOGUE };
 

@@ -5,12 +5,11 @@
  * of bands at a hundred times the rotor's speed. Limits are wide: a good study is not warned
  * of.
  */
-#include "study/study_priv.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "model/values.h"
+#include "study/check.h"
 
 /* A machine turns at less than 30 000 per minute. */
 static const double MOST_SPEED_HZ = 500.0;

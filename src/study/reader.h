@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef STUDY_READ_PRIV_H
-#define STUDY_READ_PRIV_H
+#ifndef STUDY_READER_H
+#define STUDY_READER_H
 
 #include "environment/aircraft.h"
 #include "io/members.h"
@@ -14,7 +14,7 @@ typedef struct mt_study_file {
     const mt_model *model; /* NULL: it could not be read, which has been noted */
 } mt_study_file;
 
-/* The state of reading a study, shared by read_study_*.c. */
+/* The state of reading a study. */
 typedef struct mt_study_reader {
     mt_reader r;
     mt_study *study;
@@ -51,7 +51,7 @@ mt_study_reader *mt_study_reader_of(mt_reader *r);
         MT_M_TO(mt_study_pair, double, m), .other = MT_M_PLACE(double, upper),      \
         .says = __VA_ARGS__                                                         \
     }
-/* mt_expr, and its text */
+/* mt_expr, which follows the design, and its text */
 #define MT_S_EXPR(label, must, m, text, ...)                                         \
     {                                                                                \
         .name = (label), .type = MT_KEY_TEXT, .required = (must),                    \
@@ -81,13 +81,9 @@ double mt_read_study_number(mt_study_reader *s, mt_addr value);
 /* A value of a parameter of the model (of any name): a bare number is in the study's unit of
  * its kind or in the parameter's own. Returned in SI, NaN as of mt_read_study_number. */
 double mt_read_study_value(mt_study_reader *s, mt_addr value, const char *parameter);
-/* The unit of bare numbers for the parameter; NULL: SI, or not known. */
-const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *parameter);
 /* Note a bare limit of an expression, which is in SI, that looks like a number in another
  * unit. */
 void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value);
-/* An expression that follows the design, and its text. */
-void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
 const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
 /* A list of two numbers, lower and upper, of a member or an item of it; false (noted) where it
@@ -100,33 +96,5 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
  * cannot be read is not a problem of the study. */
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
                                 mt_status rc, const mt_err *why, bool told);
-
-void mt_read_study_references(mt_study_reader *s, mt_addr object);
-void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
-/* Call it after variables and goals; goals: the list of goals, whose indices it uses. */
-void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
-void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
-
-extern const mt_key_table mt_study_keys;
-extern const mt_key_table mt_study_units_keys;
-extern const mt_key_table mt_study_search_keys;
-extern const mt_key_table mt_study_weight_sensitivity_keys;
-extern const mt_key_table mt_study_variable_keys;
-extern const mt_key_table mt_study_catalogue_keys;
-extern const mt_key_table mt_study_trade_keys;
-extern const mt_key_table mt_study_vary_keys;
-extern const mt_key_table mt_study_span_keys;
-extern const mt_key_table mt_study_reference_keys;
-extern const mt_key_table mt_study_measured_keys;
-extern const mt_key_table mt_study_measurement_keys;
-extern const mt_key_table mt_study_rotor_keys;
-extern const mt_key_table mt_study_tail_keys;
-extern const mt_key_table mt_study_machine_keys;
-extern const mt_key_table mt_study_gear_keys;
-extern const mt_key_table mt_study_objective_keys;
-extern const mt_key_table mt_study_response_keys;
-extern const mt_key_table mt_study_published_keys;
-extern const mt_key_table mt_study_published_frequency_keys;
-extern const mt_key_table mt_study_published_mac_keys;
 
 #endif

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values of members, and the units they are in: numbers of a study are values of the model's
- * parameters, or are held against expressions of them. */
-#include "study/read_priv.h"
+/* What the readers of all parts share: files that a study names; values of members, and the
+ * units they are in: numbers of a study are values of the model's parameters, or are held
+ * against expressions of them. */
+#include "study/reader.h"
 
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "io/file.h"
 #include "io/read_units.h"
 #include "model/values.h"
 
@@ -13,6 +17,98 @@ mt_study_reader *mt_study_reader_of(mt_reader *r)
 {
     return (mt_study_reader *)(void *)r;
 }
+
+/* Files */
+
+void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256)
+{
+    mt_study *const study = s->study;
+    mt_input_file *const inputs =
+        mt_arena_alloc(&study->mem, (size_t)study->n_inputs + 1, sizeof *inputs);
+    if (inputs == NULL) {
+        return;
+    }
+    for (int i = 0; i < study->n_inputs; i++) {
+        inputs[i] = study->inputs[i];
+    }
+    mt_input_file *const added = &inputs[study->n_inputs];
+    added->name = mt_arena_strdup(&study->mem, name);
+    added->sha256 = mt_arena_strdup(&study->mem, sha256);
+    study->inputs = inputs;
+    study->n_inputs++;
+}
+
+void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
+                                mt_status rc, const mt_err *why, bool told)
+{
+    if (mt_is_final(rc) || (rc == MT_E_SYSTEM && !mt_files_lack(&s->files.files, file))) {
+        s->failed = rc;
+        s->why = *why;
+        return;
+    }
+    if (!told) {
+        mt_diag_error(s->r.diags, path.addr, "%s", why->text);
+    }
+    if (s->failed == MT_OK) {
+        s->failed = MT_E_INPUT;
+        s->why = *why;
+    }
+}
+
+/* Load a model; overrides apply to the study's own only. */
+static mt_model *load_model(mt_study_reader *s, mt_name path)
+{
+    const mt_name own = s->study->model_path;
+    mt_io_options opt = s->files;
+    opt.asked = own.s != NULL && strcmp(own.s, path.s) == 0 ? opt.asked : NULL;
+    mt_err why = {.code = MT_OK};
+    mt_model *model = NULL;
+    const int told = s->model_messages->count;
+    char *const joined = mt_file_join(s->study->path, path.s);
+    if (joined == NULL) {
+        mt_arena_fail(s->r.mem);
+        return NULL;
+    }
+    const mt_status rc = mt_model_load(joined, &opt, &model, s->model_messages, &why);
+    if (rc == MT_OK) {
+        mt_read_study_note_input(s, path.s, model->sha256);
+    } else if (rc == MT_E_USAGE) { /* of what is asked for: of no file */
+        s->failed = rc;
+        s->why = why;
+    } else {
+        mt_read_study_note_failure(s, path, joined, rc, &why, s->model_messages->count > told);
+    }
+    free(joined);
+    return model;
+}
+
+const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
+{
+    mt_study *const study = s->study;
+    if (path.s == NULL) {
+        return NULL;
+    }
+    for (int i = 0; i < s->n_read; i++) {
+        if (strcmp(s->read[i].path.s, path.s) == 0) {
+            return s->read[i].model;
+        }
+    }
+    mt_study_file *const read =
+        mt_arena_grow(&study->mem, s->read, s->n_read, &s->cap_read, sizeof *read);
+    mt_model **const models = mt_arena_grow(&study->mem, study->models, study->n_models,
+                                            &study->cap_models, sizeof(mt_model *));
+    if (read == NULL || models == NULL) {
+        return NULL;
+    }
+    study->models = models;
+    models[study->n_models] = load_model(s, path);
+    read[s->n_read] = (mt_study_file){path, models[study->n_models]};
+    study->n_models += models[study->n_models] != NULL ? 1 : 0;
+    s->read = read;
+    return s->read[s->n_read++].model;
+}
+
+/* Values */
 
 static double read_expr_number(mt_study_reader *s, mt_addr value)
 {
@@ -65,15 +161,6 @@ bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, doubl
     return true;
 }
 
-void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text)
-{
-    *out = (mt_expr){0};
-    *text = mt_reader_text(&s->r, value);
-    if (*text != NULL && s->study->model != NULL) {
-        (void)mt_reader_expr_text(&s->r, value, *text, out);
-    }
-}
-
 /* A place in the struct. */
 static void *place(void *item, size_t at)
 {
@@ -106,8 +193,12 @@ void mt_study_pair(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 
 void mt_study_expr(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    mt_read_study_expr(mt_study_reader_of(r), value, place(item, key->at),
-                       (const char **)place(item, key->other));
+    const char *const text = mt_reader_text(r, value);
+    *(mt_expr *)place(item, key->at) = (mt_expr){0};
+    *(const char **)place(item, key->other) = text;
+    if (text != NULL && mt_study_reader_of(r)->study->model != NULL) {
+        (void)mt_reader_expr_text(r, value, text, place(item, key->at));
+    }
 }
 
 void mt_study_mode(mt_reader *r, const mt_key *key, mt_addr value, void *item)
@@ -124,12 +215,6 @@ static int parameter_of(const mt_study_reader *s, const char *name)
 {
     const mt_model *const m = s->study->model;
     return m == NULL || name == NULL ? MT_ABSENT : mt_model_find_parameter(m, name);
-}
-
-const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *parameter)
-{
-    const int p = parameter_of(s, parameter);
-    return p == MT_ABSENT ? NULL : mt_study_unit(s->study, p);
 }
 
 static bool is_bare(const mt_study_reader *s, mt_addr value)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/study_priv.h"
+#include "study/check.h"
 
 #include <stddef.h>
 #include <string.h>
 
 #include "base/text.h"
-#include "model/values.h"
 
 enum { KNOWN_MOST = 20 }; /* names that a message lists */
 
@@ -19,10 +18,8 @@ static const char *joined(mt_study_check *c, const char *const *names, int n)
     return text;
 }
 
-/* Note an unknown name, with the nearest of the n records of `size` bytes, or with all where
- * none is near and there are few. Every such record begins with its mt_name. */
-static void report_unknown_name(mt_study_check *c, mt_name name, const char *what,
-                                const void *records, int n, size_t size)
+void mt_check_unknown_name(mt_study_check *c, mt_name name, const char *what,
+                           const void *records, int n, size_t size)
 {
     const bool may = mt_diag_may_suggest(c->diags);
     const mt_arena_mark mark = mt_arena_get_mark(&c->study->mem);
@@ -55,8 +52,8 @@ int mt_check_parameter(mt_study_check *c, mt_name name)
     }
     const int found = mt_model_find_parameter(m, name.s);
     if (found == MT_ABSENT) {
-        report_unknown_name(c, name, "parameter", m->parameters, m->n_parameters,
-                            sizeof *m->parameters);
+        mt_check_unknown_name(c, name, "parameter", m->parameters, m->n_parameters,
+                              sizeof *m->parameters);
     }
     return found;
 }
@@ -79,8 +76,8 @@ int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name nam
     }
     const int found = mt_model_find_configuration(model, name.s);
     if (found == MT_ABSENT) {
-        report_unknown_name(c, name, "configuration", model->configurations,
-                            model->n_configurations, sizeof *model->configurations);
+        mt_check_unknown_name(c, name, "configuration", model->configurations,
+                              model->n_configurations, sizeof *model->configurations);
     }
     return found;
 }
@@ -93,35 +90,8 @@ int mt_check_reference(mt_study_check *c, mt_name name)
     }
     const int found = mt_study_find_reference(s, name.s);
     if (found == MT_ABSENT) {
-        report_unknown_name(c, name, "reference", s->references, s->n_references,
-                            sizeof *s->references);
-    }
-    return found;
-}
-
-int mt_check_measurement(mt_study_check *c, mt_name name)
-{
-    const mt_study *const s = c->study;
-    if (name.s == NULL) {
-        return MT_ABSENT;
-    }
-    const int found = mt_study_find_measurement(s, name.s);
-    if (found == MT_ABSENT) {
-        report_unknown_name(c, name, "measurement", s->measurements, s->n_measurements,
-                            sizeof *s->measurements);
-    }
-    return found;
-}
-
-const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
-{
-    const mt_aircraft_list *const list = &c->study->aircraft;
-    if (name.s == NULL) {
-        return NULL;
-    }
-    const mt_aircraft *const found = mt_aircraft_find(list, name.s);
-    if (found == NULL && list->n > 0) {
-        report_unknown_name(c, name, "aircraft", list->items, list->n, sizeof *list->items);
+        mt_check_unknown_name(c, name, "reference", s->references, s->n_references,
+                              sizeof *s->references);
     }
     return found;
 }
@@ -158,7 +128,8 @@ int mt_check_mode(mt_study_check *c, mt_mode_ref *mode)
     }
     mode->named = mt_model_find_mode(m, mode->mode_name.s);
     if (mode->named == MT_ABSENT) {
-        report_unknown_name(c, mode->mode_name, "mode", m->modes, m->n_modes, sizeof *m->modes);
+        mt_check_unknown_name(c, mode->mode_name, "mode", m->modes, m->n_modes,
+                              sizeof *m->modes);
         return 0;
     }
     return m->modes[mode->named].index;
@@ -193,65 +164,4 @@ void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mod
 bool mt_check_given(const mt_study_check *c, double value, mt_addr object, const char *member)
 {
     return MT_HAS(value) || mt_diag_member(c->diags, object, member) != object;
-}
-
-/* Values at the original design, once: variables start from them. */
-static mt_status evaluate_original(mt_study_check *c, mt_err *err)
-{
-    mt_study *const s = c->study;
-    if (s->original != NULL) {
-        return MT_OK;
-    }
-    double *const values = mt_arena_f64(&s->mem, (size_t)c->model->n_parameters, 1);
-    MT_TRY(mt_arena_check(&s->mem, err));
-    mt_err why = {.code = MT_OK};
-    const mt_status rc = mt_model_original_values(c->model, &s->mem, values, NULL, &why);
-    if (rc == MT_E_DOMAIN || rc == MT_E_INPUT) {
-        mt_diag_error(c->diags, s->model_path.addr, "%s: %s", s->model_path.s, why.text);
-        return MT_E_INPUT;
-    }
-    s->original = rc == MT_OK ? values : NULL;
-    return rc == MT_OK ? rc : mt_fail(err, rc, "%s", why.text);
-}
-
-mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
-{
-    if (study->model == NULL) {
-        return mt_fail(err, MT_E_INTERNAL, "mt_study_finish: the study has no model");
-    }
-    mt_study_check c = {.study = study, .model = study->model, .diags = diags};
-    const mt_status rc = evaluate_original(&c, err);
-    if (rc != MT_OK && rc != MT_E_INPUT) {
-        return rc;
-    }
-    mt_study_check_references(&c);
-    mt_study_check_measurements(&c);
-    mt_study_check_variables(&c);
-    mt_study_check_goals(&c);
-    mt_study_check_overrides(&c);
-    mt_study_check_objectives(&c);
-    mt_study_check_published(&c);
-    mt_study_check_responses(&c);
-    mt_study_check_trade(&c);
-    mt_study_fill_counted(&c);
-    if (study->recommendations < 1) {
-        mt_diag_error(diags, mt_diag_member(diags, MT_JSON_ROOT, "recommendations"),
-                      "recommendations (%d) must be above 0", study->recommendations);
-    }
-    if (!mt_arena_failed(&study->mem)) {
-        mt_study_check_warnings(&c);
-    }
-    if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
-        mt_study_check_bounds(&c);
-    }
-    if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
-        mt_study_check_redundant(&c);
-    }
-    MT_TRY(mt_arena_check(&study->mem, err));
-    MT_TRY(mt_arena_check(diags->mem, err));
-    if (diags->errors > 0) {
-        return mt_fail(err, MT_E_INPUT, "%s",
-                       diags->count > 0 ? diags->items[0].text : "the study has errors");
-    }
-    return MT_OK;
 }

@@ -1,18 +1,94 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
+ * The model over the box of the variables.
+ *
  * The numbers of the model where the variables stand at their bounds. A search goes there: a
  * diameter of 0 or a wall of no thickness is found now, and named with its variable, not as a
  * failure of some evaluation. Looked at are the designs with one variable at a bound and the
  * corners of the box (all 2^n for n <= MOST_ENUMERATED, else the two at which all variables are
  * least or greatest). Designs that a limit of the study forbids do not count.
+ *
+ * A variable that shapes the geometry may take joints out of the redundancy that the mechanism
+ * lives on: a tilted hinge of a planar four-bar in space, one crank of a parallelogram with
+ * three. At any other value the mechanism cannot be closed, or has lost a motion: its
+ * frequencies are no function that a search could follow. Said where the study is read.
  */
-#include "study/study_priv.h"
-
 #include <math.h>
 #include <stdlib.h>
 
+#include "mechanics/linear.h"
+#include "mechanics/products.h"
 #include "model/lint.h"
 #include "model/values.h"
+#include "study/check.h"
+
+/* The box whose modes are counted alike */
+
+static void widen_box_bounds(mt_count_box *box, int at, double x)
+{
+    if (isfinite(x)) {
+        box->lower[at] = fmin(box->lower[at], x);
+        box->upper[at] = fmax(box->upper[at], x);
+    }
+}
+
+/* Index of a parameter in the box, added where missing. */
+static int box_parameter_index(mt_count_box *box, const mt_study *s, int parameter)
+{
+    for (int i = 0; i < box->n; i++) {
+        if (box->parameter[i] == parameter) {
+            return i;
+        }
+    }
+    const double original = s->original[parameter];
+    box->parameter[box->n] = parameter;
+    box->lower[box->n] = original;
+    box->upper[box->n] = original;
+    box->at[box->n] = original;
+    return box->n++;
+}
+
+static void add_variable(mt_count_box *box, const mt_study *s, const mt_variable *v)
+{
+    const int at = box_parameter_index(box, s, v->parameter);
+    const double part = MT_HAS(v->tolerance_percent) ? v->tolerance_percent / 100.0 : 0.0;
+    const double ends[2] = {v->lower, v->upper};
+    for (int k = 0; k < 2; k++) {
+        widen_box_bounds(box, at, ends[k] * (1.0 - part));
+        widen_box_bounds(box, at, ends[k] * (1.0 + part));
+    }
+}
+
+static void fill_counted(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    const size_t room = (size_t)s->n_variables + MT_MAX_VARY + 1;
+    mt_count_box *const box = &s->counted;
+    *box = (mt_count_box){.parameter = mt_arena_int(&s->mem, room),
+                          .lower = mt_arena_f64(&s->mem, room, 1),
+                          .upper = mt_arena_f64(&s->mem, room, 1),
+                          .at = mt_arena_f64(&s->mem, room, 1)};
+    if (mt_arena_failed(&s->mem)) {
+        return;
+    }
+    for (int i = 0; i < s->n_variables && s->original != NULL; i++) {
+        if (s->variables[i].parameter != MT_ABSENT) {
+            add_variable(box, s, &s->variables[i]);
+        }
+    }
+    for (int k = 0; k < s->trade.n_vary && s->original != NULL; k++) {
+        const mt_vary *const v = &s->trade.vary[k];
+        const bool bound = v->kind == MT_VARY_BOUND && v->variable != MT_ABSENT;
+        const int parameter = bound ? s->variables[v->variable].parameter
+                              : v->kind == MT_VARY_PARAMETER ? v->parameter
+                                                             : MT_ABSENT;
+        for (int i = 0; i < v->n_values && parameter != MT_ABSENT; i++) {
+            widen_box_bounds(box, box_parameter_index(box, s, parameter), v->values[i]);
+        }
+    }
+}
+
+/* Bounds */
 
 enum { MOST_ENUMERATED = 6 };
 /* A search takes far longer than to look at a hundred million numbers: what asks for more is no
@@ -245,7 +321,7 @@ static void look_at_all(corners *k)
     k->rc = mt_arena_failed(&k->mem) ? MT_E_MEMORY : k->rc;
 }
 
-void mt_study_check_bounds(mt_study_check *c)
+static void check_corners(mt_study_check *c)
 {
     const mt_model *const m = c->model;
     const size_t n = (size_t)c->study->n_variables;
@@ -277,4 +353,105 @@ void mt_study_check_bounds(mt_study_check *c)
         mt_arena_fail(&c->study->mem);
     }
     mt_arena_free(&k.mem);
+}
+
+/* Redundant joints */
+
+/* Names configuration c's variables that break a redundancy; each variable once over all
+ * configurations. */
+static mt_status report_broken_redundancies(mt_study_check *c, mt_linear *lin, bool *told,
+                                            mt_err *err)
+{
+    const mt_study *const s = c->study;
+    for (int i = 0; i < s->n_variables; i++) {
+        mt_independence what;
+        if (told[i]) {
+            continue;
+        }
+        MT_TRY(mt_linear_independence(lin, i, &c->study->mem, &what, err));
+        told[i] = what.opens || what.blocks;
+        if (told[i]) {
+            mt_diag_error(
+                c->diags, s->variables[i].addr,
+                what.opens
+                    ? "\"%s\" cannot vary alone: with any other value than %g, joints %s "
+                      "do not close in configuration \"%s\", where equations of theirs "
+                      "are redundant; make the other lengths depend on it, or give the "
+                      "joints the freedom that they need"
+                    : "\"%s\" cannot vary: only at %g are equations of joints %s "
+                      "redundant in configuration \"%s\"; with any other value they "
+                      "block a motion, and its frequency is gone at once; give the joints "
+                      "the freedom that they need",
+                c->model->parameters[s->variables[i].parameter].name.s,
+                mt_unit_from_si(s->variables[i].shown, s->variables[i].original),
+                what.joints.text,
+                c->model->configurations[mt_linear_system(lin)->configuration].name.s);
+        }
+    }
+    return MT_OK;
+}
+
+/* Check one configuration for redundancies. Failures are ignored: they occur again, with their
+ * reason, when the study is solved. */
+static mt_status check_configuration_redundancies(mt_study_check *c, int configuration,
+                                                  const int *inputs, const double *at,
+                                                  bool *told, mt_err *err)
+{
+    mt_system *sys = NULL;
+    mt_linear *lin = NULL;
+    mt_status rc =
+        mt_system_new(c->model, configuration, c->study->n_variables, inputs, at, &sys, err);
+    if (rc == MT_OK && !sys->geometry_fixed) {
+        rc = mt_linear_new(sys, &lin, err);
+        rc = rc == MT_OK ? mt_linear_update(lin, at, false, err) : rc;
+        if (rc == MT_OK && mt_linear_redundant(lin) > 0) {
+            rc = mt_linear_update(lin, at, true, err);
+            rc = rc == MT_OK ? report_broken_redundancies(c, lin, told, err) : rc;
+        }
+    }
+    mt_linear_delete(lin);
+    mt_system_delete(sys);
+    return rc;
+}
+
+static mt_status check_redundancies(mt_study_check *c, mt_arena *mem)
+{
+    const mt_study *const s = c->study;
+    const size_t n = (size_t)s->n_variables;
+    MT_TRY(mt_arena_init(mem, 0, NULL));
+    int *const inputs = mt_arena_int(mem, n);
+    double *const at = mt_arena_f64(mem, n, 1);
+    bool *const told = mt_arena_alloc(mem, n, sizeof *told);
+    MT_TRY(mt_arena_check(mem, NULL));
+    for (size_t i = 0; i < n; i++) {
+        inputs[i] = s->variables[i].parameter;
+        at[i] = s->variables[i].original;
+    }
+    for (int i = 0; i < c->model->n_configurations; i++) {
+        if (mt_study_asks(s, i) &&
+            check_configuration_redundancies(c, i, inputs, at, told, NULL) == MT_E_MEMORY) {
+            return MT_E_MEMORY;
+        }
+    }
+    return MT_OK;
+}
+
+static void check_redundant(mt_study_check *c)
+{
+    mt_arena mem = {0};
+    if (c->study->n_variables > 0 && check_redundancies(c, &mem) == MT_E_MEMORY) {
+        mt_arena_fail(&c->study->mem);
+    }
+    mt_arena_free(&mem);
+}
+
+void mt_study_check_bounds(mt_study_check *c)
+{
+    fill_counted(c);
+    if (c->diags->errors == 0 && !mt_arena_failed(&c->study->mem)) {
+        check_corners(c);
+    }
+    if (c->diags->errors == 0 && !mt_arena_failed(&c->study->mem)) {
+        check_redundant(c);
+    }
 }

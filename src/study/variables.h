@@ -1,8 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef STUDY_CATALOGUE_H
-#define STUDY_CATALOGUE_H
+#ifndef STUDY_VARIABLES_H
+#define STUDY_VARIABLES_H
 
-#include "base/base.h"
+#include "io/members.h"
+#include "model/model.h"
+
+typedef struct mt_variable {
+    mt_name parameter_name;
+    int parameter;
+    double lower; /* continuous: both bounds are required, lower < upper */
+    double upper;
+    int n_catalogue;   /* > 0: discrete */
+    double *catalogue; /* ascending after finish */
+    double weight;     /* weight of its change in the total change; default 1 */
+    /* scale of its change, (new - original)/scale; NaN: ln(new/original), or range */
+    double scale;
+    double range; /* scale of its change where the change has no logarithm; by finish */
+    double tolerance_percent; /* of a search over tolerances; NaN: none */
+    double original;          /* the model's value; by finish */
+    const mt_unit *shown;     /* unit in which its numbers are shown; NULL: SI; by finish */
+    mt_addr addr;
+} mt_variable;
 
 /* Catalogues of values given by a rule instead of a list. */
 enum { MT_MAX_CATALOGUE = 10000 };
@@ -38,5 +56,13 @@ int mt_catalogue_series(int which, double lower, double upper, int most, double 
  * within 1e-9 of a step. Returns as mt_catalogue_series; 0 where step is not above 0.
  */
 int mt_catalogue_steps(double step, double lower, double upper, int most, double *values);
+
+extern const mt_key_table mt_study_variable_keys;
+extern const mt_key_table mt_study_catalogue_keys;
+
+struct mt_study_check;
+void mt_study_check_variables(struct mt_study_check *c);
+/* Note variables that every configuration of the goals overrides; after the goals. */
+void mt_study_check_overrides(struct mt_study_check *c);
 
 #endif

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a study compares with: modes of models, measured modes, measured frequency responses. */
-#include "study/read_priv.h"
+/*
+ * What a study compares with: modes of models, measured modes, measured frequency responses.
+ * Of the responses of a file those that are meant stay, in SI. A table says by names of ports
+ * what it has, which is held against the goals where the mechanism is known; a universal file
+ * by numbers of datasets, nodes and directions.
+ */
+#include "study/references.h"
 
 #include <limits.h>
 #include <math.h>
@@ -8,6 +13,8 @@
 #include <string.h>
 
 #include "measurement/read.h"
+#include "study/check.h"
+#include "study/reader.h"
 
 /* "sensor.direction" */
 static bool is_channel(const char *s)
@@ -143,7 +150,7 @@ const mt_key_table mt_study_reference_keys = {
         "Modes to compare with: those of a configuration of another model, or measured ones.",
     .rules = "\"dependencies\": {\"configuration\": [\"model\"]}"};
 
-void mt_read_study_references(mt_study_reader *s, mt_addr object)
+static void read_references(mt_study_reader *s, mt_addr object)
 {
     mt_study *const study = s->study;
     mt_items items = mt_reader_items(&s->r, object);
@@ -157,6 +164,8 @@ void mt_read_study_references(mt_study_reader *s, mt_addr object)
         }
     }
 }
+
+/* Measurements */
 
 static void load_measurement(mt_study_reader *s, mt_measurement *m)
 {
@@ -240,7 +249,7 @@ const mt_key_table mt_study_measurement_keys = {
     .says = "A file of measured frequency responses: a table (CSV), or a universal file with "
             "datasets 58."};
 
-void mt_read_study_measurements(mt_study_reader *s, mt_addr object)
+static void read_measurements(mt_study_reader *s, mt_addr object)
 {
     mt_study *const study = s->study;
     mt_items items = mt_reader_items(&s->r, object);
@@ -253,4 +262,263 @@ void mt_read_study_measurements(mt_study_reader *s, mt_addr object)
             (void)mt_members_read(&s->r, items.at, &mt_study_measurement_keys, m);
         }
     }
+}
+
+void mt_read_study_references(mt_study_reader *s, mt_addr references, mt_addr measurements)
+{
+    read_references(s, references);
+    read_measurements(s, measurements);
+}
+
+/* Checks of references */
+
+/* Directions by bit, as model.h defines them; in the plane "r" is the rotation. */
+static const char *const DIRECTIONS[] = {"x", "y", "z", "rx", "ry", "rz"};
+
+static bool measures(const mt_model *m, const mt_sensor *sensor, const char *direction)
+{
+    for (int bit = 0; bit < MT_COUNT(DIRECTIONS); bit++) {
+        const bool has = (sensor->directions >> bit & 1U) != 0;
+        const bool plane_rotation = m->dimension == 2 && bit == MT_COUNT(DIRECTIONS) - 1;
+        if (has && (strcmp(direction, DIRECTIONS[bit]) == 0 ||
+                    (plane_rotation && strcmp(direction, "r") == 0))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* True where "sensor.direction" is a channel of the model. */
+static bool has_channel(const mt_model *m, const char *channel)
+{
+    const char *const dot = strrchr(channel, '.');
+    for (int i = 0; dot != NULL && i < m->n_sensors; i++) {
+        const char *const name = m->sensors[i].name.s;
+        const size_t length = strlen(name);
+        if (length == (size_t)(dot - channel) && strncmp(name, channel, length) == 0) {
+            return measures(m, &m->sensors[i], dot + 1);
+        }
+    }
+    return false;
+}
+
+/* One sensor and one direction that both models have are enough. */
+static bool share_channel(const mt_model *a, const mt_model *b)
+{
+    for (int i = 0; i < a->n_sensors; i++) {
+        const int other = mt_model_find_sensor(b, a->sensors[i].name.s);
+        if (other != MT_ABSENT &&
+            (a->sensors[i].directions & b->sensors[other].directions) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int mt_count_common_channels(const mt_model *model, const mt_measured_mode *mode)
+{
+    int n = 0;
+    for (int k = 0; k < mode->n_values; k++) {
+        n += has_channel(model, mode->channels[k].s) ? 1 : 0;
+    }
+    return n;
+}
+
+static void check_measured(mt_study_check *c, mt_reference *r)
+{
+    for (int i = 0; i < r->n_modes; i++) {
+        mt_measured_mode *const mode = &r->modes[i];
+        int matched = 0;
+        for (int k = 0; k < mode->n_values; k++) {
+            const mt_name channel = mode->channels[k];
+            if (has_channel(c->model, channel.s)) {
+                matched++;
+            } else {
+                mt_diag_warning(c->diags, channel.addr,
+                                "the model has no sensor and direction \"%s\": ignored",
+                                channel.s);
+            }
+        }
+        if (mode->n_values > 0 && matched == 0) {
+            mt_diag_error(c->diags, mode->addr,
+                          "no sensor of this shape is in the model: nothing can be compared");
+        }
+    }
+}
+
+static void check_references(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    for (int i = 0; i < s->n_references; i++) {
+        mt_reference *const r = &s->references[i];
+        const int first = mt_study_find_reference(s, r->name.s);
+        if (first < i) {
+            mt_diag_error(c->diags, r->name.addr, "reference \"%s\" is given twice", r->name.s);
+        }
+        r->configuration = MT_ABSENT;
+        if (r->model_path.s == NULL) {
+            check_measured(c, r);
+        }
+        if (r->model == NULL) {
+            continue;
+        }
+        r->configuration = r->configuration_name.s != NULL
+                               ? mt_check_configuration(c, r->model, r->configuration_name)
+                               : mt_check_only_configuration(c, r->model, r->addr);
+    }
+}
+
+void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr)
+{
+    if (reference == MT_ABSENT) {
+        return;
+    }
+    const mt_reference *const r = &c->study->references[reference];
+    if (r->model != NULL && !share_channel(c->model, r->model)) {
+        mt_diag_error(c->diags, addr,
+                      "the model and reference \"%s\" have no sensor and direction in common",
+                      r->name.s);
+    }
+}
+
+/* Checks of measurements */
+
+static int find_measurement(const mt_study *study, const char *name)
+{
+    for (int i = 0; i < study->n_measurements; i++) {
+        if (strcmp(study->measurements[i].name.s, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
+int mt_check_measurement(mt_study_check *c, mt_name name)
+{
+    const mt_study *const s = c->study;
+    if (name.s == NULL) {
+        return MT_ABSENT;
+    }
+    const int found = find_measurement(s, name.s);
+    if (found == MT_ABSENT) {
+        mt_check_unknown_name(c, name, "measurement", s->measurements, s->n_measurements,
+                              sizeof *s->measurements);
+    }
+    return found;
+}
+
+/* True where the freedom of the file is the requested one. A node alone means any direction;
+ * the opposite direction is the same freedom, as the sign is in the values. */
+static bool is_freedom(mt_name asked, const mt_measured_freedom *has)
+{
+    mt_measured_freedom f;
+    if (asked.s == NULL || !mt_measured_freedom_parse(asked.s, &f)) {
+        return true;
+    }
+    return f.node == has->node && (f.direction == 0 || f.direction == has->direction ||
+                                   f.direction == -has->direction);
+}
+
+static bool is_meant(const mt_measurement *m, const mt_measured_response *r)
+{
+    return mt_measured_is_response(r) && (m->dataset == 0 || m->dataset == r->dataset) &&
+           is_freedom(m->response_name, &r->response) &&
+           is_freedom(m->reference_name, &r->reference);
+}
+
+/* The address of the member that selects one of several responses. */
+static mt_addr choice_of(const mt_study_check *c, const mt_measurement *m)
+{
+    return m->dataset > 0                ? mt_diag_member(c->diags, m->addr, "dataset")
+           : m->response_name.s != NULL  ? m->response_name.addr
+           : m->reference_name.s != NULL ? m->reference_name.addr
+                                         : m->addr;
+}
+
+/* Keep only the selected response of a measurement. */
+static void keep_selected_response(mt_study_check *c, mt_measurement *m)
+{
+    const bool table = m->n_responses > 0 && m->responses[0].dataset == 0;
+    const bool asked =
+        m->dataset > 0 || m->response_name.s != NULL || m->reference_name.s != NULL;
+    if (table && asked) {
+        mt_diag_error(c->diags, choice_of(c, m),
+                      "datasets and nodes go with a universal file, and \"%s\" is a table",
+                      m->path.s);
+        return;
+    }
+    mt_measured_response kept = {.dataset = 0};
+    int n = 0;
+    for (int i = 0; i < m->n_responses && !table; i++) {
+        if (is_meant(m, &m->responses[i])) {
+            kept = n++ == 0 ? m->responses[i] : kept;
+        }
+    }
+    if (table) {
+        return;
+    }
+    if (n == 1) {
+        m->responses[0] = kept;
+        m->n_responses = 1;
+        return;
+    }
+    const char *const list = mt_measured_list_text(m, &c->study->mem);
+    mt_diag_error(c->diags, choice_of(c, m),
+                  n > 1 ? "%d frequency responses of \"%s\" can be meant: say which by "
+                          "\"dataset\", or by \"response_node\" and \"reference_node\" (%s)"
+                        : "%d frequency responses of \"%s\" are meant by this; it has: %s",
+                  n, m->path.s, *list == '\0' ? "none" : list);
+}
+
+static bool scale(mt_study_check *c, const mt_measurement *m, mt_measured_response *r)
+{
+    const double by = MT_HAS(m->factor) ? m->factor : r->si;
+    if (!MT_HAS(by)) {
+        if (r->foreign != NULL && r->against != NULL) {
+            mt_diag_error(c->diags, m->path.addr,
+                          "\"%s\" says that it has %s, and \"%s\" for its unit: give "
+                          "\"factor\", by which its values are multiplied to be in SI",
+                          m->path.s, r->against, r->foreign);
+            return false;
+        }
+        mt_diag_error(c->diags, m->path.addr,
+                      r->foreign != NULL
+                          ? "the unit \"%s\" of \"%s\" is not known: give \"factor\", by which "
+                            "its values are multiplied to be in SI"
+                          : "\"%s%s\" does not say what it measures, so that its units say "
+                            "nothing: give \"factor\", by which its values are multiplied to "
+                            "be in SI",
+                      r->foreign != NULL ? r->foreign : "", m->path.s);
+        return false;
+    }
+    r->scale = by;
+    r->unit = MT_HAS(m->factor) ? NULL : r->unit;
+    return true;
+}
+
+static void check_measurements(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    for (int i = 0; i < s->n_measurements; i++) {
+        mt_measurement *const m = &s->measurements[i];
+        if (find_measurement(s, m->name.s) < i) {
+            mt_diag_error(c->diags, m->name.addr, "measurement \"%s\" is given twice",
+                          m->name.s);
+        }
+        if (!m->read) {
+            continue;
+        }
+        const int before = c->diags->errors;
+        keep_selected_response(c, m);
+        bool known = c->diags->errors == before;
+        for (int k = 0; k < m->n_responses && known; k++) {
+            known = scale(c, m, &m->responses[k]);
+        }
+    }
+}
+
+void mt_study_check_references(mt_study_check *c)
+{
+    check_references(c);
+    check_measurements(c);
 }

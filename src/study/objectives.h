@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef STUDY_OBJECTIVE_KINDS_H
-#define STUDY_OBJECTIVE_KINDS_H
+#ifndef STUDY_OBJECTIVES_H
+#define STUDY_OBJECTIVES_H
 
 #include <stdbool.h>
+
+#include "expr/expr.h"
+#include "io/members.h"
 
 /*
  * The kinds of objectives as a table: X(id, name, unit in results, properties). The operations
@@ -60,5 +63,30 @@ const mt_objective_kind *mt_objective_kind_of(mt_objective_type type);
 int mt_objectives_with(unsigned properties, mt_objective_type *types, const char **names);
 /* True where the kind has all of these properties. */
 bool mt_objective_is(mt_objective_type type, unsigned properties);
+
+typedef struct mt_objective {
+    mt_objective_type type;
+    mt_expr expression;
+    const char *expression_text;
+    mt_name_list of; /* of mass: patterns of names of bodies, links, bars; none: all */
+    mt_addr addr;
+} mt_objective;
+
+struct mt_study;
+struct mt_goal;
+/* True where the objective takes the goal's limit as its scale. The goal then requires nothing
+ * else. */
+bool mt_study_is_scale(const struct mt_study *study, const struct mt_goal *goal);
+/* True where the objective is the misfit and every goal is a part of it: no goal then decides
+ * whether a design is feasible. */
+bool mt_study_is_fit(const struct mt_study *study);
+
+extern const mt_key_table mt_study_objective_keys;
+
+struct mt_study_reader;
+struct mt_study_check;
+void mt_read_study_objectives(struct mt_study_reader *s, mt_addr value);
+/* Check them and what they need of goals, which are checked before; none: the change. */
+void mt_study_check_objectives(struct mt_study_check *c);
 
 #endif
