@@ -27,7 +27,6 @@
 #include "mechanics/linear.h"
 #include "report/table.h"
 #include "result/folder.h"
-#include "result/model.h"
 
 /*
  * How much memory the program may have. The system counts (RLIMIT_DATA: private writable

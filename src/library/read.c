@@ -16,7 +16,7 @@
 #include "io/options.h"
 #include "library/scene_designs.h"
 #include "report/page.h"
-#include "result/model.h"
+#include "result/folder.h"
 #include "result/read.h"
 #include "result/write.h"
 #include "study/read.h"

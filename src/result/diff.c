@@ -14,7 +14,7 @@
 #include "io/json_print.h"
 #include "io/reader.h"
 #include "result/folder.h"
-#include "result/read.h"
+#include "result/result.h"
 
 enum { A, B, SIDES, MOST_KEYS = 3 };
 
@@ -535,7 +535,7 @@ static mt_status read_result_side(const char *path, const char *root, search *s,
         s->out->doc[side] = doc;
         s->r[side] = (mt_reader){.doc = doc, .diags = mt_json_diags(doc), .mem = &s->scratch};
         if (rc == MT_OK) {
-            (void)mt_result_check_format(&s->r[side]);
+            (void)mt_record_check_format(&s->r[side], &mt_result_record, "result");
         }
         rc = mt_json_status(doc, name, err);
         mt_json_report(doc, name, messages);

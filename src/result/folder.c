@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * What belongs to a result.json. It names the files beside it with their digests (run.outputs)
- * but for timing.json, which differs from run to run where the result does not, and so names
- * the result's digest instead. A file that is not there contradicts nothing, unless the folder
- * is just being replaced; one that is must be the one that is named.
- */
+/* The files of a result: what stands beside a result.json, and the model it was solved from. */
 #include "result/folder.h"
 
 #include <errno.h>
@@ -12,16 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "io/file.h"
-#include "io/folder.h"
+#include "base/arena.h"
+#include "base/text.h"
 #include "io/json.h"
-
-static const char RESULT[] = "result.json";
-static const char TIMING[] = "timing.json";
-
-enum { PART_MAX_BYTES = 1 << 28 };
-
-typedef enum part_state { PART_MISSING, PART_BELONGS, PART_FOREIGN } part_state;
 
 const char *mt_result_file_name(mt_result_file which)
 {
@@ -43,7 +31,7 @@ mt_status mt_result_path(const char *path, char **out, mt_err *err)
     mt_text_add(&t, path);
     if (there && S_ISDIR(st.st_mode)) {
         mt_text_add(&t, path[0] != '\0' && path[strlen(path) - 1] == '/' ? "" : "/");
-        mt_text_add(&t, RESULT);
+        mt_text_add(&t, mt_result_file_name(MT_RESULT_FILE_RESULT));
     }
     if (t.failed) {
         mt_text_free(&t);
@@ -70,135 +58,119 @@ mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *na
     return MT_OK;
 }
 
-/* *does: true where timing.json names the result with this digest. */
-static mt_status names_result(const mt_file *timing, const char *sha256, bool *does,
-                              mt_err *err)
+/*
+ * A result names its model relative to the study's folder and holds its SHA-256, but no path of
+ * this machine. So the model is looked for where it may be: from the study that timing.json
+ * beside the result names, from the result's folder and those above it, from the current folder
+ * and its "studies", each with the rules for files that a study there has. Only the very bytes
+ * that were solved are taken.
+ */
+const char *mt_result_model_sha256(const mt_result *result)
 {
-    mt_json *doc = NULL;
-    mt_status rc = mt_json_parse(timing->bytes, timing->length, &doc, err);
-    *does = false;
-    if (rc == MT_OK) {
-        const mt_addr value = mt_json_member(doc, MT_JSON_ROOT, "result_sha256");
-        *does = value != MT_NO_ADDR && mt_json_type_of(doc, value) == MT_JSON_STRING &&
-                strcmp(mt_json_string(doc, value), sha256) == 0;
-    }
-    mt_json_delete(doc);
-    return rc == MT_E_INPUT ? MT_OK : rc;
-}
-
-mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out, mt_err *err)
-{
-    const char *const name = mt_result_file_name(MT_RESULT_FILE_TIMING);
-    char *const timing = mt_file_join(path, name);
-    mt_file file = {.bytes = NULL};
-    bool belongs = false;
-    if (timing == NULL) {
-        return mt_fail_memory(err);
-    }
-    mt_status rc = MT_OK;
-    if (!mt_file_absent(timing)) {
-        rc = mt_file_read(timing, NULL, PART_MAX_BYTES, &file, err);
-        rc = rc == MT_OK ? names_result(&file, sha256, &belongs, err) : rc;
-    }
-    if (belongs) {
-        mt_text_add_n(out, file.bytes, file.length);
-    }
-    mt_file_free(&file);
-    free(timing);
-    return out->failed ? mt_fail_memory(err) : rc == MT_E_INPUT ? MT_OK : rc;
-}
-
-/* The file of that name beside the result; `sha256` is its own digest, or the result's for
- * timing.json. */
-static mt_status check_part_file(const char *path, const char *name, const char *sha256,
-                                 part_state *state, mt_err *err)
-{
-    char *const part = mt_file_join(path, name);
-    mt_file file = {.bytes = NULL};
-    if (part == NULL) {
-        return mt_fail_memory(err);
-    }
-    mt_status rc = MT_OK;
-    *state = PART_MISSING;
-    if (!mt_file_absent(part)) {
-        bool belongs = false;
-        rc = mt_file_read(part, NULL, PART_MAX_BYTES, &file, err);
-        if (rc == MT_OK && strcmp(name, TIMING) == 0) {
-            rc = names_result(&file, sha256, &belongs, err);
-        } else if (rc == MT_OK) {
-            belongs = strcmp(file.sha256, sha256) == 0;
-        }
-        *state = belongs ? PART_BELONGS : PART_FOREIGN;
-        if (rc == MT_E_SYSTEM && mt_file_absent(part)) { /* gone meanwhile */
-            *state = PART_MISSING;
-            rc = MT_OK;
-        }
-        rc = rc == MT_E_INPUT ? MT_OK : rc; /* a pipe, a folder: not what was written */
-    }
-    mt_file_free(&file);
-    free(part);
-    return rc;
-}
-
-static mt_status refuse_foreign_part(const char *path, const char *name, bool unfinished,
-                                     mt_err *err)
-{
-    if (unfinished) {
-        return mt_fail(err, MT_E_INPUT,
-                       "%s: a run ended while it replaced the files of this folder, and \"%s\" "
-                       "is not of this result: run the study again",
-                       path, name);
-    }
-    return mt_fail(err, MT_E_INPUT,
-                   "%s: \"%s\" beside it is not of this result: one of them was changed, or "
-                   "comes from another run. Run the study again, or copy the %s that you trust "
-                   "to where it stands alone",
-                   path, name, RESULT);
-}
-
-/* The digest that the result names for a file; NULL. */
-static const char *named_digest(const mt_result *r, const char *name)
-{
-    for (int i = 0; i < r->run.n_outputs; i++) {
-        if (strcmp(r->run.outputs[i].file, name) == 0) {
-            return r->run.outputs[i].sha256;
+    for (int i = 0; i < result->run.n_inputs; i++) {
+        if (strcmp(result->run.inputs[i].file, result->model.file) == 0) {
+            return result->run.inputs[i].sha256;
         }
     }
     return NULL;
 }
 
-bool mt_result_has_folder(const char *path, const mt_result *result)
+/* A search for the model: `file` and `path` once it is found. */
+typedef struct quest {
+    const mt_result *result;
+    const char *root; /* NULL: of each place that of a study there */
+    mt_file file;
+    char *path; /* heap; NULL: not found yet */
+    /* memory is out, or what may be it could not be read: the first such failure */
+    mt_status failed;
+    mt_err why;
+} quest;
+
+/* Read the model at its path relative to the file `naming`; found where its bytes are those
+ * that were solved. */
+static void try_from(quest *q, const char *naming)
 {
-    return result->run.n_outputs > 0 && strcmp(mt_text_base_name(path), RESULT) == 0;
+    const char *const hash = mt_result_model_sha256(q->result);
+    mt_err why = {.code = MT_OK};
+    if (q->path != NULL || q->failed == MT_E_MEMORY) {
+        return;
+    }
+    char *const path = naming == NULL ? NULL : mt_file_join(naming, q->result->model.file);
+    char *const own = naming == NULL || q->root != NULL ? NULL : mt_file_default_root(naming);
+    const char *const root = q->root != NULL ? q->root : own;
+    const mt_status rc = path == NULL || root == NULL
+                             ? mt_fail_memory(&why)
+                             : mt_file_read(path, root, MT_JSON_MAX_BYTES, &q->file, &why);
+    free(own);
+    if (rc == MT_OK && hash != NULL && strcmp(q->file.sha256, hash) == 0) {
+        q->path = path;
+        return;
+    }
+    if (rc == MT_E_MEMORY ||
+        (rc == MT_E_SYSTEM && q->failed == MT_OK && !mt_file_absent(path))) {
+        q->failed = rc;
+        q->why = why;
+    }
+    mt_file_free(&q->file);
+    free(path);
 }
 
-mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_result *result,
-                                 mt_err *err)
+/* The study's path that `run` left in timing.json beside the result; empty where there is none.
+ * Fails: MT_E_MEMORY. */
+static mt_status study_of(const char *result_path, mt_text *study)
 {
-    char *const folder = mt_file_folder(path);
-    if (folder == NULL) {
-        return mt_fail_memory(err);
-    }
-    const bool unfinished = mt_folder_unfinished(folder, RESULT);
-    free(folder);
-    part_state state = PART_MISSING;
-    for (int i = 0; i < result->run.n_outputs; i++) {
-        const char *const name = result->run.outputs[i].file;
-        MT_TRY(check_part_file(path, name, result->run.outputs[i].sha256, &state, err));
-        if (state == PART_FOREIGN || (state == PART_MISSING && unfinished)) {
-            return refuse_foreign_part(path, name, unfinished, err);
+    char *const path = mt_file_join(result_path, "timing.json");
+    mt_file file = {.bytes = NULL};
+    mt_json *doc = NULL;
+    mt_status rc =
+        path == NULL ? MT_E_MEMORY : mt_file_read(path, NULL, MT_JSON_MAX_BYTES, &file, NULL);
+    rc = rc == MT_OK ? mt_json_parse(file.bytes, file.length, &doc, NULL) : rc;
+    if (rc == MT_OK) {
+        const mt_addr member = mt_json_member(doc, MT_JSON_ROOT, "study_path");
+        if (member != MT_NO_ADDR && mt_json_type_of(doc, member) == MT_JSON_STRING) {
+            mt_text_add(study, mt_json_string(doc, member));
         }
     }
-    for (int i = 0; i < MT_RESULT_FILE_COUNT;
-         i++) { /* also what a result without it stands by */
-        const char *const name = mt_result_file_name((mt_result_file)i);
-        if (i != MT_RESULT_FILE_RESULT && named_digest(result, name) == NULL) {
-            MT_TRY(check_part_file(path, name, i == MT_RESULT_FILE_TIMING ? sha256 : "", &state,
-                                   err));
-            if (state == PART_FOREIGN) {
-                return refuse_foreign_part(path, name, unfinished, err);
-            }
-        }
+    mt_json_delete(doc);
+    mt_file_free(&file);
+    free(path);
+    return rc == MT_E_MEMORY || study->failed ? MT_E_MEMORY : MT_OK;
+}
+
+mt_status mt_result_find_model(const char *result_path, const mt_result *result,
+                               const char *root, mt_file *file, char **path, mt_err *err)
+{
+    static const char *const beside[] = {"x", "../x", "../../x", "../studies/x",
+                                         "../../studies/x"};
+    static const char *const here[] = {"x", "studies/x"};
+    quest q = {.result = result, .root = root};
+    mt_text study = {.s = NULL};
+    *file = (mt_file){.bytes = NULL};
+    *path = NULL;
+    if (study_of(result_path, &study) == MT_E_MEMORY) {
+        q.failed = mt_fail_memory(&q.why);
+    } else if (study.s != NULL) {
+        try_from(&q, study.s);
     }
-    return MT_OK;
+    mt_text_free(&study);
+    for (int i = 0; i < MT_COUNT(beside); i++) {
+        char *const naming = mt_file_join(result_path, beside[i]);
+        try_from(&q, naming);
+        free(naming);
+    }
+    for (int i = 0; i < MT_COUNT(here); i++) {
+        try_from(&q, here[i]);
+    }
+    if (q.path != NULL) {
+        *file = q.file;
+        *path = q.path;
+        return MT_OK;
+    }
+    if (q.failed != MT_OK) {
+        return mt_fail(err, q.failed, "%s", q.why.text);
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "%s: the model \"%s\" is not found as it was when the study was solved: "
+                   "name it with --model, or with --root a folder that it lies in",
+                   result_path, result->model.file);
 }

@@ -3,7 +3,7 @@
 #define RESULT_FOLDER_H
 
 #include "base/sha256.h"
-#include "base/text.h"
+#include "io/file.h"
 #include "result/result.h"
 
 /* The files that hold a result in its folder. All are replaced atomically (io/folder.h);
@@ -28,16 +28,20 @@ mt_status mt_result_path(const char *path, char **out, mt_err *err);
  * MT_E_MEMORY. */
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,
                                  char (*sha256)[MT_SHA256_TEXT], mt_err *err);
-/* The text of the timing.json next to the result at `path`, where it names the result with this
- * digest; else empty. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
-mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out,
-                                mt_err *err);
-/* True where the result was written as a folder and the path still has its file name. A renamed
- * copy belongs to no folder. */
-bool mt_result_has_folder(const char *path, const mt_result *result);
-/* Check that the other files in the folder of such a result, where they exist, match it.
- * sha256: of its own bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
-mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_result *result,
-                                 mt_err *err);
+
+/* The SHA-256 of the model that a result was solved from; NULL where the result has none. */
+const char *mt_result_model_sha256(const mt_result *result);
+
+/**
+ * Find the model that a result was solved from by its digest: from the place of the study that
+ * timing.json next to the result names, the result's folder and the two above it, the current
+ * folder, and folders "studies" in these.
+ * @param[in]  root folder that must contain it; NULL: the parent of the place from which it is
+ *   named, as of a study there
+ * @param[out] file, path  mt_file_free; heap. Empty and NULL on failure
+ * Fails: MT_E_INPUT (it is not found), MT_E_SYSTEM (a candidate cannot be read), MT_E_MEMORY.
+ */
+mt_status mt_result_find_model(const char *result_path, const mt_result *result,
+                               const char *root, mt_file *file, char **path, mt_err *err);
 
 #endif

@@ -14,10 +14,10 @@
 
 #include "io/file.h"
 #include "io/folder.h"
+#include "io/json.h"
 #include "io/json_print.h"
 #include "io/reader.h"
 #include "result/folder.h"
-#include "result/points.h"
 #include "study/study.h"
 
 enum { READER_PATIENCE_MS = 10000 };
@@ -196,7 +196,7 @@ static void read_field(result_reader *s, mt_addr value, const mt_field *f, void 
     void *const at = (char *)item + f->offset;
     void *const other = (char *)item + f->other;
     switch (f->type) {
-    case MT_FIELD_FORMAT: /* mt_result_check_format */
+    case MT_FIELD_FORMAT: /* mt_record_check_format */
         break;
     case MT_FIELD_TEXT:
         *(const char **)at = mt_reader_text(&s->r, value);
@@ -393,23 +393,9 @@ static void check_outputs(result_reader *s, mt_addr list)
     }
 }
 
-bool mt_result_check_format(mt_reader *r)
-{
-    const mt_field *const f = &mt_result_record.fields[0];
-    assert(f->type == MT_FIELD_FORMAT);
-    if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT) ||
-        !mt_reader_format(r, f->format, "result")) {
-        return false;
-    }
-    if (mt_json_member(r->doc, MT_JSON_ROOT, f->name) == MT_NO_ADDR) {
-        mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", f->name);
-    }
-    return true;
-}
-
 static void read_result_root(result_reader *s)
 {
-    if (!mt_result_check_format(&s->r)) {
+    if (!mt_record_check_format(&s->r, &mt_result_record, "result")) {
         return;
     }
     list_variables(s);
@@ -426,6 +412,101 @@ static void read_result_root(result_reader *s)
     for (int i = 0; i < s->result->n_doubts; i++) {
         s->result->doubts[i].level = MT_LEVEL_WARNING;
     }
+}
+
+/*
+ * The points of a trade study as mt_result_write writes them: nearly all of a large
+ * result.json, and each a JSON text of its own that can be read alone. JSON as a whole takes
+ * nine times its text while it is read.
+ */
+typedef struct point_texts {
+    int n;
+    const char *at; /* the next one */
+    char *rest;     /* the text with an empty list instead of the points; from malloc */
+    size_t rest_length;
+} point_texts;
+
+static const char TRADE[] = "\n  \"trade\": {\n";
+static const char LIST[] = "\n    \"points\": [";
+static const char POINT[] = "\n      {\n";
+static const char POINT_END[] = "\n      }";
+static const char LIST_END[] = "\n    ]";
+
+static bool stands_at(const char *text, const char *what)
+{
+    return strncmp(text, what, strlen(what)) == 0;
+}
+
+/* Walk over the points behind `from`, which ends behind the last of them. -1: laid out
+ * otherwise. */
+static int count_points(const char **from)
+{
+    int n = 0;
+    const char *at = *from;
+    while (stands_at(at, POINT) && n < INT_MAX) {
+        const char *const end = strstr(at + 1, POINT_END);
+        if (end == NULL) {
+            return -1;
+        }
+        at = end + strlen(POINT_END);
+        n++;
+        if (stands_at(at, LIST_END)) {
+            *from = at;
+            return n;
+        }
+        if (*at++ != ',') {
+            return -1;
+        }
+    }
+    return -1;
+}
+
+/* Find the points, by lines and their indentation: no line feed stands within a valid string.
+ * If `rest` and every point are JSON, and `rest` has no list of points elsewhere, these are the
+ * points of /trade/points. n 0 and rest NULL where the text has fewer than `least` points or is
+ * laid out otherwise; else owned by the caller (free_points), and `text` outlives it. Fails:
+ * MT_E_MEMORY. */
+static mt_status find_points(const char *text, size_t length, int least, point_texts *out,
+                             mt_err *err)
+{
+    *out = (point_texts){.n = 0};
+    const char *const trade = strstr(text, TRADE);
+    const char *const list = trade == NULL ? NULL : strstr(trade, LIST);
+    const char *const first = list == NULL ? NULL : list + strlen(LIST);
+    const char *end = first;
+    const int n = first == NULL ? -1 : count_points(&end);
+    if (n < least || end == NULL) {
+        return MT_OK;
+    }
+    const size_t before = (size_t)(first - text);
+    const size_t after = length - (size_t)(end - text);
+    char *const rest = malloc(before + after + 1);
+    if (rest == NULL) {
+        return mt_fail(err, MT_E_MEMORY, "%s", mt_status_text(MT_E_MEMORY));
+    }
+    memcpy(rest, text, before);
+    memcpy(rest + before, end, after);
+    rest[before + after] = '\0';
+    out->n = n;
+    out->at = first;
+    out->rest = rest;
+    out->rest_length = before + after;
+    return MT_OK;
+}
+
+/* The text of the next of the n points; returns its length. */
+static size_t next_point(point_texts *p, const char **text)
+{
+    *text = p->at + 1;
+    const char *const end = strstr(*text, POINT_END) + strlen(POINT_END);
+    p->at = end + 1; /* behind its comma, but for the last one */
+    return (size_t)(end - *text);
+}
+
+static void free_points(point_texts *p)
+{
+    free(p->rest);
+    *p = (point_texts){.n = 0};
 }
 
 /* Parse a text, and read from it next; *whole: nothing is to be said about it. */
@@ -447,8 +528,7 @@ static mt_status close_part(result_reader *s, bool *whole, mt_err *err)
     return mt_arena_check(s->r.mem, err);
 }
 
-static mt_status read_points(result_reader *s, mt_result_points *points, bool *whole,
-                             mt_err *err)
+static mt_status read_points(result_reader *s, point_texts *points, bool *whole, mt_err *err)
 {
     const mt_field *const trade = find_field(&mt_result_record, "trade", 0);
     const mt_field *const list = trade == NULL ? NULL : find_field(trade->record, "points", 0);
@@ -461,7 +541,7 @@ static mt_status read_points(result_reader *s, mt_result_points *points, bool *w
     for (int i = 0; i < points->n && *whole; i++) {
         mt_json *doc = NULL;
         const char *text = NULL;
-        const size_t length = mt_result_points_next(points, &text);
+        const size_t length = next_point(points, &text);
         mt_status rc = open_part(s, text, length, &doc, whole, err);
         if (*whole) {
             read_record(s, MT_JSON_ROOT, list->record, &to->points[i]);
@@ -479,10 +559,10 @@ static mt_status read_points(result_reader *s, mt_result_points *points, bool *w
  * mt_result_write does and there is nothing to say about it; else *whole is false. */
 static mt_status read_in_parts(result_reader *s, const mt_file *file, bool *whole, mt_err *err)
 {
-    mt_result_points points;
+    point_texts points;
     mt_json *rest = NULL; /* the names of the variables live in it */
     *whole = false;
-    MT_TRY(mt_result_points_find(file->bytes, file->length, MANY_POINTS, &points, err));
+    MT_TRY(find_points(file->bytes, file->length, MANY_POINTS, &points, err));
     if (points.rest == NULL) {
         return MT_OK;
     }
@@ -496,7 +576,7 @@ static mt_status read_in_parts(result_reader *s, const mt_file *file, bool *whol
         rc = read_points(s, &points, whole, err);
     }
     mt_json_delete(rest);
-    mt_result_points_free(&points);
+    free_points(&points);
     return rc;
 }
 
@@ -535,6 +615,158 @@ static mt_status read_result_text(result_reader *s, const char *path, const mt_f
     mt_json_delete(doc);
     return rc;
 }
+
+/*
+ * What belongs to a result.json. It names the files beside it with their digests (run.outputs)
+ * but for timing.json, which differs from run to run where the result does not, and so names
+ * the result's digest instead. A file that is not there contradicts nothing, unless the folder
+ * is just being replaced; one that is must be the one that is named.
+ */
+static const char RESULT[] = "result.json";
+static const char TIMING[] = "timing.json";
+
+enum { PART_MAX_BYTES = 1 << 28 };
+
+typedef enum part_state { PART_MISSING, PART_BELONGS, PART_FOREIGN } part_state;
+
+/* *does: true where timing.json names the result with this digest. */
+static mt_status names_result(const mt_file *timing, const char *sha256, bool *does,
+                              mt_err *err)
+{
+    mt_json *doc = NULL;
+    mt_status rc = mt_json_parse(timing->bytes, timing->length, &doc, err);
+    *does = false;
+    if (rc == MT_OK) {
+        const mt_addr value = mt_json_member(doc, MT_JSON_ROOT, "result_sha256");
+        *does = value != MT_NO_ADDR && mt_json_type_of(doc, value) == MT_JSON_STRING &&
+                strcmp(mt_json_string(doc, value), sha256) == 0;
+    }
+    mt_json_delete(doc);
+    return rc == MT_E_INPUT ? MT_OK : rc;
+}
+
+mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out, mt_err *err)
+{
+    const char *const name = mt_result_file_name(MT_RESULT_FILE_TIMING);
+    char *const timing = mt_file_join(path, name);
+    mt_file file = {.bytes = NULL};
+    bool belongs = false;
+    if (timing == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = MT_OK;
+    if (!mt_file_absent(timing)) {
+        rc = mt_file_read(timing, NULL, PART_MAX_BYTES, &file, err);
+        rc = rc == MT_OK ? names_result(&file, sha256, &belongs, err) : rc;
+    }
+    if (belongs) {
+        mt_text_add_n(out, file.bytes, file.length);
+    }
+    mt_file_free(&file);
+    free(timing);
+    return out->failed ? mt_fail_memory(err) : rc == MT_E_INPUT ? MT_OK : rc;
+}
+
+/* The file of that name beside the result; `sha256` is its own digest, or the result's for
+ * timing.json. */
+static mt_status check_part_file(const char *path, const char *name, const char *sha256,
+                                 part_state *state, mt_err *err)
+{
+    char *const part = mt_file_join(path, name);
+    mt_file file = {.bytes = NULL};
+    if (part == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = MT_OK;
+    *state = PART_MISSING;
+    if (!mt_file_absent(part)) {
+        bool belongs = false;
+        rc = mt_file_read(part, NULL, PART_MAX_BYTES, &file, err);
+        if (rc == MT_OK && strcmp(name, TIMING) == 0) {
+            rc = names_result(&file, sha256, &belongs, err);
+        } else if (rc == MT_OK) {
+            belongs = strcmp(file.sha256, sha256) == 0;
+        }
+        *state = belongs ? PART_BELONGS : PART_FOREIGN;
+        if (rc == MT_E_SYSTEM && mt_file_absent(part)) { /* gone meanwhile */
+            *state = PART_MISSING;
+            rc = MT_OK;
+        }
+        rc = rc == MT_E_INPUT ? MT_OK : rc; /* a pipe, a folder: not what was written */
+    }
+    mt_file_free(&file);
+    free(part);
+    return rc;
+}
+
+static mt_status refuse_foreign_part(const char *path, const char *name, bool unfinished,
+                                     mt_err *err)
+{
+    if (unfinished) {
+        return mt_fail(err, MT_E_INPUT,
+                       "%s: a run ended while it replaced the files of this folder, and \"%s\" "
+                       "is not of this result: run the study again",
+                       path, name);
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "%s: \"%s\" beside it is not of this result: one of them was changed, or "
+                   "comes from another run. Run the study again, or copy the %s that you trust "
+                   "to where it stands alone",
+                   path, name, RESULT);
+}
+
+/* The digest that the result names for a file; NULL. */
+static const char *named_digest(const mt_result *r, const char *name)
+{
+    for (int i = 0; i < r->run.n_outputs; i++) {
+        if (strcmp(r->run.outputs[i].file, name) == 0) {
+            return r->run.outputs[i].sha256;
+        }
+    }
+    return NULL;
+}
+
+/* True where the result was written as a folder and the path still has its file name. A renamed
+ * copy belongs to no folder. */
+static bool has_folder(const char *path, const mt_result *result)
+{
+    return result->run.n_outputs > 0 && strcmp(mt_text_base_name(path), RESULT) == 0;
+}
+
+/* Check that the other files in the folder of such a result, where they exist, match it.
+ * sha256: of its own bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
+static mt_status check_folder(const char *path, const char *sha256, const mt_result *result,
+                              mt_err *err)
+{
+    char *const folder = mt_file_folder(path);
+    if (folder == NULL) {
+        return mt_fail_memory(err);
+    }
+    const bool unfinished = mt_folder_unfinished(folder, RESULT);
+    free(folder);
+    part_state state = PART_MISSING;
+    for (int i = 0; i < result->run.n_outputs; i++) {
+        const char *const name = result->run.outputs[i].file;
+        MT_TRY(check_part_file(path, name, result->run.outputs[i].sha256, &state, err));
+        if (state == PART_FOREIGN || (state == PART_MISSING && unfinished)) {
+            return refuse_foreign_part(path, name, unfinished, err);
+        }
+    }
+    for (int i = 0; i < MT_RESULT_FILE_COUNT;
+         i++) { /* also what a result without it stands by */
+        const char *const name = mt_result_file_name((mt_result_file)i);
+        if (i != MT_RESULT_FILE_RESULT && named_digest(result, name) == NULL) {
+            MT_TRY(check_part_file(path, name, i == MT_RESULT_FILE_TIMING ? sha256 : "", &state,
+                                   err));
+            if (state == PART_FOREIGN) {
+                return refuse_foreign_part(path, name, unfinished, err);
+            }
+        }
+    }
+    return MT_OK;
+}
+
+/* From a file. */
 
 static const mt_files *files_of(const mt_io_options *opt)
 {
@@ -581,8 +813,8 @@ static mt_status load_locked(const char *path, const mt_io_options *opt, mt_resu
     mt_status rc = mt_folder_lock(folder, true, READER_PATIENCE_MS, &lock, err);
     free(folder);
     rc = rc == MT_OK ? load_alone(path, opt, out, sha256, messages, err) : rc;
-    if (rc == MT_OK && mt_result_has_folder(path, *out)) {
-        rc = mt_result_check_folder(path, sha256, *out, err);
+    if (rc == MT_OK && has_folder(path, *out)) {
+        rc = check_folder(path, sha256, *out, err);
     }
     mt_folder_unlock(lock);
     return rc;
@@ -596,8 +828,8 @@ mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result *
     *out = NULL;
     MT_TRY(mt_files_give(files_of(opt), path, &given, err));
     mt_status rc = load_alone(path, opt, out, sha256, messages, err);
-    if (rc == MT_OK && !given && mt_result_has_folder(path, *out)) {
-        rc = mt_result_check_folder(path, sha256, *out, err);
+    if (rc == MT_OK && !given && has_folder(path, *out)) {
+        rc = check_folder(path, sha256, *out, err);
         if (rc == MT_E_INPUT) {
             mt_result_delete(*out);
             *out = NULL;

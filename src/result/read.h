@@ -3,8 +3,8 @@
 #define RESULT_READ_H
 
 #include "base/diagnostics.h"
+#include "base/text.h"
 #include "io/options.h"
-#include "io/reader.h"
 #include "result/result.h"
 
 /**
@@ -16,8 +16,9 @@
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
                          mt_diagnostics *messages, mt_err *err);
 
-/* True where the document is an object whose "format" is not another text than that of a
- * result; a missing one is noted. */
-bool mt_result_check_format(mt_reader *r);
+/* The text of the timing.json next to the result at `path`, where it names the result with this
+ * digest; else empty. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out,
+                                mt_err *err);
 
 #endif

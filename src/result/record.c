@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result/record.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -21,18 +22,6 @@ void mt_record_clear(const mt_record *record, void *item)
             mt_record_clear(f->record, at);
         }
     }
-}
-
-void *mt_record_get_pointer(const void *at)
-{
-    void *pointer = NULL;
-    memcpy(&pointer, at, sizeof pointer);
-    return pointer;
-}
-
-void mt_record_set_pointer(void *at, const void *pointer)
-{
-    memcpy(at, &pointer, sizeof pointer);
 }
 
 /* Replace n borrowed items, if there are any, by their copy; returns it. */
@@ -312,4 +301,18 @@ void mt_record_serialize(const mt_record *record, void *item, int n_variables,
         serialize_field(f, (char *)item + f->offset, (char *)item + f->other, n_variables,
                         serializer, mem);
     }
+}
+
+bool mt_record_check_format(mt_reader *r, const mt_record *record, const char *kind)
+{
+    const mt_field *const f = &record->fields[0];
+    assert(f->type == MT_FIELD_FORMAT);
+    if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT) ||
+        !mt_reader_format(r, f->format, kind)) {
+        return false;
+    }
+    if (mt_json_member(r->doc, MT_JSON_ROOT, f->name) == MT_NO_ADDR) {
+        mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", f->name);
+    }
+    return true;
 }

@@ -4,10 +4,12 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "base/arena.h"
 #include "base/base.h"
 #include "base/workers.h"
+#include "io/reader.h"
 
 /*
  * The members of a struct as a table. Writer, reader, copier and checks of results walk these
@@ -217,8 +219,21 @@ void mt_record_own(const mt_record *record, void *item, const void *like, int n_
  * not usable. */
 void mt_record_serialize(const mt_record *record, void *item, int n_variables,
                          mt_serializer *serializer, mt_arena *mem);
+/* True where the document is an object whose "format", the first field of its record, is not
+ * another text; a missing one is noted. kind: of file, in words. */
+bool mt_record_check_format(mt_reader *r, const mt_record *record, const char *kind);
+
 /* The pointer stored at a member, of any pointed-to type. */
-void *mt_record_get_pointer(const void *at);
-void mt_record_set_pointer(void *at, const void *pointer);
+static inline void *mt_record_get_pointer(const void *at)
+{
+    void *pointer = NULL;
+    memcpy(&pointer, at, sizeof pointer);
+    return pointer;
+}
+
+static inline void mt_record_set_pointer(void *at, const void *pointer)
+{
+    memcpy(at, &pointer, sizeof pointer);
+}
 
 #endif

@@ -14,8 +14,9 @@
 
 /*
  * The answer of a study: plain records, no computation. All texts live in the result's arena.
- * NaN: not applicable (null in JSON). Each member has its line in the tables of result.c, which
- * drive writer, reader and copier and from which schemas/result.schema.json is written.
+ * NaN: not applicable (null in JSON). Each member has its line in the tables of
+ * result_tables.c, which drive writer, reader and copier and from which
+ * schemas/result.schema.json is written.
  */
 
 typedef struct mt_result_parameter {
@@ -526,13 +527,10 @@ double mt_result_shown(double value, double factor);
 /* The members of these structs as in JSON. */
 extern const mt_record mt_result_record;
 extern const mt_record mt_design_record; /* mt_recommendation */
-/* mt_result_response, a member of mt_recommendation */
-extern const mt_record mt_response_record;
-extern const mt_record mt_between_record; /* mt_result_between, a member of mt_recommendation */
 extern const mt_record mt_warning_record;
 
 /* Functions mt_recommendation_default() etc.: records with all numbers "not applicable".
- * X(struct, its table in result.c) */
+ * X(struct, its table in result_tables.c) */
 #define MT_RESULT_DEFAULT_LIST(X)          \
     X(mt_recommendation, mt_design_record) \
     X(mt_result_goal, GOAL)                \
