@@ -4,6 +4,7 @@
 
 #include "base/run.h"
 #include "base/workers.h"
+#include "problem/problem.h"
 #include "study/study.h"
 
 /* Called before a proof that may take long, with the answer so far (status "interrupted"),
@@ -23,5 +24,33 @@ typedef struct mt_incumbent_callback {
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
                               const mt_run *run, const mt_incumbent_callback *incumbent,
                               mt_result **out, mt_err *err);
+
+/*
+ * A compiled study and its own run. The study is the caller's. It may be answered repeatedly,
+ * one answer at a time, and must not move: the problem points into it.
+ */
+typedef struct mt_question {
+    const mt_study *study;
+    mt_run run; /* refers to the next two */
+    mt_interrupt interrupt;
+    mt_work_counters spent; /* of all answers to it */
+    mt_problem *p;          /* owned */
+} mt_question;
+
+/* Remaining evaluations; LONG_MAX: the study sets no budget. */
+long mt_question_left(const mt_question *q);
+/* *q zeroed before. run (NULL: none) contains the question's own run. Call mt_question_free in
+ * any case. Fails: as mt_problem_new. */
+mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_run *run,
+                           const mt_solve_options *opt, mt_err *err);
+/* What follows counts as its search, and an interrupt cuts it as one. */
+void mt_question_enter_search(mt_question *q);
+/* Accepts a zeroed question. */
+void mt_question_free(mt_question *q);
+/* mt_study_solve of the compiled study; task_path: its path (NULL: none). */
+mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt,
+                             const mt_task_path *task_path,
+                             const mt_incumbent_callback *incumbent, mt_result **out,
+                             mt_err *err);
 
 #endif

@@ -2,12 +2,11 @@
 /* The front of a trade study, and the objectives that it compares. */
 #include "answer/trade.h"
 
-#include "answer/solve_priv.h"
-
 #include <limits.h>
 #include <math.h>
 #include <string.h>
 
+#include "answer/solve.h"
 #include "base/format.h"
 #include "base/workers.h"
 #include "describe/describe.h"
@@ -604,8 +603,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
             continue;
         }
         tried[way] = x;
-        mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
-        p->q->spent.phase = MT_PHASE_SEARCH;
+        mt_question_enter_search(p->q);
         MT_TRY(trade_improves(w, x, best_x, &gain, left, err));
         if (!gain || mt_question_left(p->q) < WARM_LEAST) {
             continue;

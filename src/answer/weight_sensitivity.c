@@ -186,21 +186,11 @@ static mt_status list_searches(weight_sensitivity *s, mt_arena *mem, mt_err *err
     return mt_arena_check(mem, err);
 }
 
-bool mt_weight_sensitivity_is_asked(const mt_problem *p)
-{
-    return MT_HAS(p->study->weight_sensitivity.factor) &&
-           mt_objective_is(p->stages[0].type, MT_RESIDUALS) &&
-           !mt_study_has_catalogues(p->study);
-}
-
 mt_status mt_weight_sensitivity_solve(mt_workspace *const *workers, int n_workers,
                                       const mt_nlp_solution *best, mt_arena *mem, long most,
                                       long *evaluations, mt_result *result, mt_err *err)
 {
     const mt_problem *const p = workers[0]->p;
-    if (!mt_weight_sensitivity_is_asked(p)) {
-        return MT_OK;
-    }
     weight_sensitivity s = {
         .workers = workers, .asked = workers[0]->c, .p = p, .result = result, .best = best};
     MT_TRY(list_searches(&s, mem, err));

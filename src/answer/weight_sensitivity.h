@@ -6,13 +6,11 @@
 
 /*
  * Change of the best design when the weight of one goal at a time is multiplied or divided by
- * the study's factor and the misfit is minimised again from the best design. No effect where
- * the study does not request it. Evaluations are added to *evaluations. Cost: one local search
- * for each weighted goal and side, distributed over the workers, which are all set to one
+ * the study's factor, which it must have, and the misfit, its first objective, is minimised
+ * again from the best design. Evaluations are added to *evaluations. Cost: one local search for
+ * each weighted goal and side, distributed over the workers, which are all set to one
  * subproblem.
  */
-/* True where the study requests it. */
-bool mt_weight_sensitivity_is_asked(const mt_problem *p);
 mt_status mt_weight_sensitivity_solve(mt_workspace *const *workers, int n_workers,
                                       const mt_nlp_solution *best, mt_arena *mem, long most,
                                       long *evaluations, mt_result *result, mt_err *err);

@@ -18,7 +18,7 @@ MEANT = {
         "src/search/search.c", "src/search/mode_placements.c",  # what no goal settles stays at the original
         "src/search/mode_placements_bounds.c",  # how far a box is from the original
         "src/search/catalogue_search.c",  # combinations come in the order of their change
-        "src/answer/solve_phases.c",  # the original itself
+        "src/answer/solve.c",  # the original itself
         "src/answer/trade.c",  # results tell the change of every design
     ),
 }
