@@ -14,7 +14,7 @@
 #include "report/table.h"
 #include "response/ports.h"
 #include "simulate/reading.h"
-#include "simulate/realise.h"
+#include "simulate/signal.h"
 #include "simulate/start.h"
 #include "vibration/profile_response.h"
 

@@ -15,7 +15,7 @@
 #include "model/lint.h"
 #include "model/values.h"
 #include "response/response.h"
-#include "simulate/realise.h"
+#include "simulate/signal.h"
 #include "simulate/start.h"
 #include "vibration/profile_response.h"
 

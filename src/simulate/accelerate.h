@@ -34,32 +34,4 @@ typedef struct mt_gauss {
 mt_status mt_gauss_solve(const mt_system *sys, const mt_gauss *g, double *x, double *lambda,
                          int *rank, mt_arena *mem, mt_err *err);
 
-/*
- * Successive solutions along a motion, whose masses and equations change little between them:
- * with the inverse of
- *     S [M -A^T; A 0] S,   S a scale of each unknown,
- * at an earlier position, the residual of the present equations is reduced by iterative
- * refinement until it is rounding, for a fourth of the work of an elimination. Where that does
- * not converge, or the equations are singular, mt_gauss_solve gives the answer, and its
- * position the next inverse.
- */
-typedef struct mt_gauss_near {
-    int n; /* unknowns; 0: too many, every solution by elimination */
-    bool known;
-    double *inverse; /* n x n */
-    double *scale;   /* [n] */
-    double *x;       /* [n] */
-    double *rest;    /* [n] */
-    double *step;    /* [n] */
-    long served;     /* solutions by this inverse */
-    long wait;       /* eliminations until the next inverse */
-    long patience;   /* least wait after an inverse that did not converge */
-} mt_gauss_near;
-
-mt_status mt_gauss_near_init(mt_gauss_near *o, const mt_system *sys, int m, mt_arena *mem,
-                             mt_err *err);
-/* As mt_gauss_solve. O(nq^2) where the inverse serves. */
-mt_status mt_gauss_solve_near(mt_gauss_near *o, const mt_system *sys, const mt_gauss *g,
-                              double *x, double *lambda, mt_arena *mem, mt_err *err);
-
 #endif

@@ -8,11 +8,393 @@
 #include <string.h>
 
 #include "base/run.h"
+#include "expr/op.h"
 #include "linalg/exponential.h"
 #include "mechanics/affine.h"
 #include "mechanics/eliminate.h"
 #include "modal/modal.h"
-#include "simulate/form.h"
+
+/* Inputs as polynomials and sines. */
+
+/*
+ * A function of time as a polynomial and sines,
+ *     u(t) = sum_k c_k t^k + sum_i (a_i cos w_i t + b_i sin w_i t),
+ * a solution of a linear equation u^(m) = ... without input: such inputs are states of a linear
+ * system of their own. Steps, ramps and samples joined by lines have this form piece by piece.
+ */
+enum { FORM_DEGREE = 8, FORM_WAVES = 24 };
+
+typedef struct wave {
+    double w; /* > 0 [rad/s] */
+    double cosine;
+    double sine;
+} wave;
+
+typedef struct form {
+    int degree; /* of the polynomial; -1: none */
+    double c[FORM_DEGREE + 1];
+    int n;
+    wave wave[FORM_WAVES];
+} form;
+
+/*
+ * Sums, products and integer powers of forms are forms while degrees and waves are few enough:
+ *     cos a cos b = (cos(a - b) + cos(a + b))/2, and so on;
+ * t sin t is none. A kink is where d = (first argument) - (second one) changes its sign: d a
+ * line, or a constant with one wave, whose roots have closed forms. Between two of them its
+ * sign is that in the middle.
+ */
+
+static const double TWO_PI = 6.283185307179586477;
+/* A root this part of a period behind t is the one at which the piece begins. */
+static const double SAME_ROOT = 1e-9;
+
+static form constant(double value)
+{
+    return (form){.degree = value == 0.0 ? -1 : 0, .c = {value}};
+}
+
+static bool is_constant(const form *f)
+{
+    return f->degree <= 0 && f->n == 0;
+}
+
+static void trim(form *f)
+{
+    while (f->degree >= 0 && f->c[f->degree] == 0.0) {
+        f->degree--;
+    }
+}
+
+static bool add_wave(form *f, double w, double cosine, double sine)
+{
+    if (w == 0.0) {
+        f->c[0] += cosine;
+        f->degree = f->degree > 0 ? f->degree : 0;
+        trim(f);
+        return true;
+    }
+    const double sign = w < 0.0 ? -1.0 : 1.0;
+    int at = 0;
+    while (at < f->n && f->wave[at].w != sign * w) {
+        at++;
+    }
+    if (at == FORM_WAVES) {
+        return false;
+    }
+    if (at == f->n) {
+        f->wave[f->n++] = (wave){.w = sign * w};
+    }
+    f->wave[at].cosine += cosine;
+    f->wave[at].sine += sign * sine;
+    if (f->wave[at].cosine == 0.0 && f->wave[at].sine == 0.0) {
+        f->wave[at] = f->wave[--f->n];
+    }
+    return true;
+}
+
+/* out += factor * f. */
+static bool add_form(form *out, double factor, const form *f)
+{
+    bool good = true;
+    for (int k = 0; k <= f->degree; k++) {
+        out->c[k] += factor * f->c[k];
+    }
+    out->degree = f->degree > out->degree ? f->degree : out->degree;
+    trim(out);
+    for (int i = 0; i < f->n && good && factor != 0.0; i++) {
+        good =
+            add_wave(out, f->wave[i].w, factor * f->wave[i].cosine, factor * f->wave[i].sine);
+    }
+    return good;
+}
+
+/* out = a b. */
+static bool multiply_forms(const form *a, const form *b, form *out)
+{
+    bool good = a->degree + b->degree <= FORM_DEGREE && (a->n == 0 || b->degree <= 0) &&
+                (b->n == 0 || a->degree <= 0);
+    *out = (form){.degree = -1};
+    for (int i = 0; i <= a->degree && good; i++) {
+        for (int k = 0; k <= b->degree; k++) {
+            out->c[i + k] += a->c[i] * b->c[k];
+        }
+    }
+    out->degree = good && a->degree >= 0 && b->degree >= 0 ? a->degree + b->degree : -1;
+    trim(out);
+    for (int i = 0; i < a->n && good && b->degree == 0; i++) {
+        good =
+            add_wave(out, a->wave[i].w, b->c[0] * a->wave[i].cosine, b->c[0] * a->wave[i].sine);
+    }
+    for (int i = 0; i < b->n && good && a->degree == 0; i++) {
+        good =
+            add_wave(out, b->wave[i].w, a->c[0] * b->wave[i].cosine, a->c[0] * b->wave[i].sine);
+    }
+    for (int i = 0; i < a->n; i++) {
+        for (int k = 0; k < b->n && good; k++) {
+            const wave p = a->wave[i];
+            const wave q = b->wave[k];
+            const double cc = 0.5 * p.cosine * q.cosine;
+            const double ss = 0.5 * p.sine * q.sine;
+            const double sc = 0.5 * p.sine * q.cosine;
+            const double cs = 0.5 * p.cosine * q.sine;
+            good = add_wave(out, p.w - q.w, cc + ss, sc - cs) &&
+                   add_wave(out, p.w + q.w, cc - ss, sc + cs);
+        }
+    }
+    return good;
+}
+
+/* sin or cos of a line. */
+static bool wave_of(bool sine, const form *a, form *out)
+{
+    *out = (form){.degree = -1};
+    if (a->degree > 1 || a->n > 0) {
+        return false;
+    }
+    const double phase = a->degree >= 0 ? a->c[0] : 0.0;
+    const double w = a->degree == 1 ? a->c[1] : 0.0;
+    return sine ? add_wave(out, w, sin(phase), cos(phase))
+                : add_wave(out, w, cos(phase), -sin(phase));
+}
+
+static bool power(const form *a, const form *b, form *out)
+{
+    const double exponent = b->degree == 0 ? b->c[0] : 0.0;
+    if (!is_constant(b) || exponent != floor(exponent) || exponent < 0.0 ||
+        exponent > FORM_DEGREE) {
+        return false;
+    }
+    *out = constant(1.0);
+    for (int i = 0; i < (int)exponent; i++) {
+        const form so_far = *out;
+        if (!multiply_forms(&so_far, a, out)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Value and derivative of one wave at t. */
+static void wave_eval(const wave *w, double t, double out[2])
+{
+    const double c = cos(w->w * t);
+    const double s = sin(w->w * t);
+    out[0] = (w->cosine * c) + (w->sine * s);
+    out[1] = w->w * ((w->sine * c) - (w->cosine * s));
+}
+
+/* out[k] = derivative of order k at t, k < count. */
+static void form_derivatives(const form *f, double t, int count, double *out)
+{
+    double c[FORM_DEGREE + 1];
+    int degree = f->degree;
+    memcpy(c, f->c, sizeof c);
+    for (int k = 0; k < count; k++) {
+        out[k] = 0.0;
+        for (int i = degree; i >= 0; i--) {
+            out[k] = (out[k] * t) + c[i];
+        }
+        for (int i = 1; i <= degree; i++) {
+            c[i - 1] = i * c[i];
+        }
+        degree--;
+    }
+}
+
+static double value_at(const form *f, double t)
+{
+    double value = 0.0;
+    form_derivatives(f, t, 1, &value);
+    for (int i = 0; i < f->n; i++) {
+        double of[2];
+        wave_eval(&f->wave[i], t, of);
+        value += of[0];
+    }
+    return value;
+}
+
+/* The first root of d behind t, infinite where there is none. false: not known. */
+static bool next_root(const form *d, double t, double *root)
+{
+    *root = HUGE_VAL;
+    if (d->n == 0 && d->degree <= 1) {
+        const double at = d->degree == 1 ? -d->c[0] / d->c[1] : HUGE_VAL;
+        *root = at > t ? at : HUGE_VAL;
+        return true;
+    }
+    if (d->n != 1 || d->degree > 0) {
+        return false;
+    }
+    /* size sin(w t + phase) = -c */
+    const wave w = d->wave[0];
+    const double size = hypot(w.cosine, w.sine);
+    const double c = d->degree == 0 ? d->c[0] : 0.0;
+    const double phase = atan2(w.cosine, w.sine);
+    if (!(fabs(c) < size)) {
+        return true;
+    }
+    const double up = asin(-c / size);
+    const double angles[2] = {up - phase, (0.5 * TWO_PI) - up - phase};
+    const double period = TWO_PI / w.w;
+    for (int i = 0; i < 2; i++) {
+        const double turns = floor((t / period) - (angles[i] / TWO_PI) + SAME_ROOT) + 1.0;
+        *root = fmin(*root, (angles[i] + (TWO_PI * turns)) / w.w);
+    }
+    return true;
+}
+
+/* The form of min (sign -1) or max (1) of two forms just after t; a sign of 0: |a - b|. */
+static bool form_of_min_or_max(int sign, const form *a, const form *b, double t, double *until,
+                               form *out)
+{
+    form d = *a;
+    double root = HUGE_VAL;
+    if (!add_form(&d, -1.0, b) || !next_root(&d, t, &root)) {
+        return false;
+    }
+    *until = fmin(*until, root);
+    const double middle = isfinite(root) ? 0.5 * (t + root) : t + 1.0;
+    const bool above = value_at(&d, middle) >= 0.0;
+    if (sign == 0) {
+        *out = constant(0.0);
+        return add_form(out, above ? 1.0 : -1.0, &d);
+    }
+    *out = above == (sign > 0) ? *a : *b;
+    return true;
+}
+
+/* One operation, not a leaf. */
+static bool operate(mt_op op, const form *a, const form *b, double t, double *until, form *out)
+{
+    const form none = constant(0.0);
+    switch ((int)op) {
+    case MT_OP_NEG:
+        *out = none;
+        return add_form(out, -1.0, a);
+    case MT_OP_ADD:
+    case MT_OP_SUB:
+        *out = *a;
+        return add_form(out, op == MT_OP_ADD ? 1.0 : -1.0, b);
+    case MT_OP_MUL:
+        return multiply_forms(a, b, out);
+    case MT_OP_DIV:
+        *out = none;
+        return is_constant(b) && b->degree == 0 && add_form(out, 1.0 / b->c[0], a);
+    case MT_OP_POW:
+        return power(a, b, out);
+    case MT_OP_SIN:
+    case MT_OP_COS:
+        return wave_of(op == MT_OP_SIN, a, out);
+    case MT_OP_ABS:
+        return form_of_min_or_max(0, a, &none, t, until, out);
+    case MT_OP_MIN:
+    case MT_OP_MAX:
+        return form_of_min_or_max(op == MT_OP_MAX ? 1 : -1, a, b, t, until, out);
+    default:
+        return false;
+    }
+}
+
+/* Evaluate an operation whose operands are constants. */
+static bool fold(const mt_program_node *n, const form *a, const form *b, form *out)
+{
+    const bool two = n->b != MT_NO_NODE;
+    if (!is_constant(a) || (two && !is_constant(b))) {
+        return false;
+    }
+    const double value = mt_op_value(n->op, a->degree == 0 ? a->c[0] : 0.0,
+                                     two && b->degree == 0 ? b->c[0] : 0.0);
+    *out = constant(value);
+    return isfinite(value);
+}
+
+static bool form_of_program(const mt_signal *s, double t, mt_arena *mem, form *out,
+                            double *until)
+{
+    const mt_program *const p = s->program;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    form *const forms = mt_arena_alloc(mem, (size_t)p->count, sizeof *forms);
+    bool *const known = mt_arena_alloc(mem, (size_t)p->count, sizeof *known);
+    const bool room = !mt_arena_failed(mem);
+    for (int i = 0; i < p->count && room; i++) {
+        const mt_program_node *const n = &p->nodes[i];
+        if (n->op == MT_OP_CONST) {
+            forms[i] = constant(n->value);
+            known[i] = true;
+        } else if (n->op == MT_OP_PARAM) {
+            forms[i] = (form){.degree = 1, .c = {0.0, 1.0}};
+            known[i] = true;
+        } else if (known[n->a] && (n->b == MT_NO_NODE || known[n->b])) {
+            const form *const b = n->b == MT_NO_NODE ? NULL : &forms[n->b];
+            double own = HUGE_VAL;
+            known[i] = fold(n, &forms[n->a], b, &forms[i]) ||
+                       operate(n->op, &forms[n->a], b, t, &own, &forms[i]);
+            *until = fmin(*until, own);
+        }
+    }
+    const bool good = room && known[s->node];
+    if (good) {
+        *out = forms[s->node];
+    }
+    mt_arena_rewind(mem, mark);
+    return good;
+}
+
+/* f := f'. */
+static void differentiate(form *f)
+{
+    for (int k = 1; k <= f->degree; k++) {
+        f->c[k - 1] = k * f->c[k];
+    }
+    if (f->degree >= 0) {
+        f->c[f->degree--] = 0.0;
+    }
+    for (int i = 0; i < f->n; i++) {
+        const wave w = f->wave[i];
+        f->wave[i] = (wave){w.w, w.w * w.sine, -w.w * w.cosine};
+    }
+}
+
+/* The derivative of order `slope` of the signal just after t, as a form, which holds up to
+ * *until (infinite: for all times). False where it has no known form: a varying frequency,
+ * exp(t), a kink at a place without a closed form. Kinks are places where an argument of abs,
+ * min or max changes sign. mem remembers a shortage. */
+static bool form_of_signal(const mt_signal *s, int slope, double t, mt_arena *mem, form *out,
+                           double *until)
+{
+    bool good = true;
+    *out = constant(0.0);
+    *until = HUGE_VAL;
+    switch (s->kind) {
+    case MT_SIGNAL_SINES:
+        for (int i = 0; i < s->n && good; i++) {
+            const mt_sine *const w = &s->sines[i];
+            good = add_wave(out, TWO_PI * w->hz, w->amplitude * sin(w->phase),
+                            w->amplitude * cos(w->phase));
+        }
+        break;
+    case MT_SIGNAL_LINES:
+        good = s->n <= FORM_WAVES;
+        for (int i = 0; i < s->n && good; i++) {
+            good = add_wave(out, TWO_PI * (s->from_hz + (i * s->step_hz)), s->sine[i],
+                            s->cosine[i]);
+        }
+        break;
+    case MT_SIGNAL_SWEEP:
+        good = s->from_hz == s->to_hz && add_wave(out, TWO_PI * s->from_hz, 0.0, s->level);
+        break;
+    case MT_SIGNAL_EXPRESSION:
+        good = form_of_program(s, t, mem, out, until);
+        break;
+    }
+    for (int k = 0; k < slope && good; k++) {
+        differentiate(out);
+    }
+    return good;
+}
+
+/* The motion of the modes. */
 
 /*
  * A mechanism of linear equations (mechanics/affine.h) in modal coordinates,
@@ -57,7 +439,7 @@ typedef struct input_state {
     int first;  /* index of its first state */
     int degree; /* of the polynomial; -1: none */
     double scale;
-    mt_form form; /* the present form */
+    form form; /* the present form */
     double largest;
 } input_state;
 
@@ -394,7 +776,7 @@ static bool oscillators_fits(const oscillators_fit *fit)
  * between them it is compared, and where it differs by more than FITTED it is called coarse.
  */
 
-enum { DEGREE = MT_FORM_DEGREE };
+enum { DEGREE = FORM_DEGREE };
 static const double PI = 3.14159265358979323846;
 /* What a polynomial may differ from the input that it stands for, of its largest value. */
 static const double FITTED = 1e-12;
@@ -408,13 +790,13 @@ static mt_status propagation_forms(propagation *r, bool *changed, mt_err *err)
     for (int i = 0; i < r->opt->n_inputs; i++) {
         const mt_sim_input *const in = &r->opt->inputs[i];
         input_state *const s = &r->input[i];
-        mt_form form;
+        form now;
         double until = HUGE_VAL;
         if (s->fitted) {
             continue;
         }
         const int slope = in->push == MT_SIM_BASE ? in->slope : 0;
-        const bool known = mt_form_of_signal(in->signal, slope, r->t, &r->own, &form, &until);
+        const bool known = form_of_signal(in->signal, slope, r->t, &r->own, &now, &until);
         MT_TRY(mt_arena_check(&r->own, err));
         if (!known || (slope > 0 && isfinite(until))) {
             /* a signal that is one form at times and none at others is fitted at all of them;
@@ -426,13 +808,13 @@ static mt_status propagation_forms(propagation *r, bool *changed, mt_err *err)
             *changed = true;
             continue;
         }
-        bool same = form.n == s->form.n && form.degree <= s->degree;
-        for (int k = 0; k < form.n && same; k++) {
-            same = form.wave[k].w == s->form.wave[k].w;
+        bool same = now.n == s->form.n && now.degree <= s->degree;
+        for (int k = 0; k < now.n && same; k++) {
+            same = now.wave[k].w == s->form.wave[k].w;
         }
         *changed = *changed || !same;
-        s->degree = form.degree > s->degree ? form.degree : s->degree;
-        s->form = form;
+        s->degree = now.degree > s->degree ? now.degree : s->degree;
+        s->form = now;
         r->until = fmin(r->until, until);
     }
     return MT_OK;
@@ -545,7 +927,7 @@ static mt_status propagation_set(propagation *r, double t, double h, mt_err *err
         if (s->fitted) {
             MT_TRY(fit(r, i, t, h, p, err));
         } else {
-            mt_form_derivatives(&s->form, t, s->degree + 1, p);
+            form_derivatives(&s->form, t, s->degree + 1, p);
         }
         for (int k = 0; k <= s->degree; k++, at++) {
             r->z[at] = p[k] * power / s->scale;
@@ -554,7 +936,7 @@ static mt_status propagation_set(propagation *r, double t, double h, mt_err *err
         r->u[i] += p[0];
         for (int k = 0; k < s->form.n; k++, at += 2) {
             double of[2];
-            mt_wave_eval(&s->form.wave[k], t, of);
+            wave_eval(&s->form.wave[k], t, of);
             r->z[at] = of[0] / s->scale;
             r->z[at + 1] = of[1] / s->form.wave[k].w / s->scale;
             r->u[i] += of[0];
@@ -685,8 +1067,8 @@ enum { PIECES_MOST = 20000 };
 static mt_status allocate_propagation(propagation *r, mt_err *err)
 {
     const size_t n = (size_t)r->n;
-    const size_t most = (2 * n) + ((size_t)r->opt->n_inputs *
-                                   (MT_FORM_DEGREE + 1 + ((size_t)2 * MT_FORM_WAVES)));
+    const size_t most =
+        (2 * n) + ((size_t)r->opt->n_inputs * (FORM_DEGREE + 1 + ((size_t)2 * FORM_WAVES)));
     const size_t gauges = (size_t)r->opt->n_gauges;
     double **const states[] = {&r->z, &r->begin, &r->inner, &r->rate, &r->work};
     for (int i = 0; i < MT_COUNT(states); i++) {

@@ -9,7 +9,7 @@
  * are one linear system z' = A z, and each step is a product with exp(A h)
  * (linalg/exponential.h).
  *
- * Inputs that are polynomials and sines, piece by piece (simulate/form.h), are states. Other
+ * Inputs that are polynomials and sines, piece by piece, are states. Other
  * smooth inputs are replaced in each step by a polynomial, fitted as well as rounding allows.
  */
 

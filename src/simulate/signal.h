@@ -53,4 +53,36 @@ mt_status mt_signal_of_psd(const mt_psd *psd, int lines, unsigned long seed, mt_
 mt_status mt_signal_rms(int n, const mt_signal *signals, double duration_s, int samples,
                         double *rms, mt_err *err);
 
+/* How a signal drives a motion. */
+typedef enum mt_sim_push {
+    MT_SIM_FORCE, /* at a sensor's channel, along its global axis [N, N m] */
+    MT_SIM_BASE,  /* acceleration of the ground along an axis [m/s^2] */
+    MT_SIM_MOVE   /* the driven joint's coordinate, from its held position [rad, m] */
+} mt_sim_push;
+
+typedef struct mt_sim_input {
+    mt_sim_push push;
+    int at;    /* FORCE: channel; BASE: axis 0..2 */
+    int slope; /* BASE: the signal is the acceleration (0), velocity (1) or position (2) */
+    const mt_signal *signal;
+} mt_sim_input;
+
+/* One realisation of a profile of vibration as a motion of the ground: random parts first, then
+ * tones, each of which stays at its frequency or sweeps its range once. */
+typedef struct mt_realised {
+    int n;
+    mt_signal *signals; /* [n] accelerations [m/s^2] */
+    double rms;         /* RMS of the random parts over the duration [m/s^2] */
+} mt_realised;
+
+/* Make a realisation, all in mem. Fails: as mt_realise_psd, MT_E_MEMORY. */
+mt_status mt_realise(const mt_vibration *v, double duration_s, unsigned long seed,
+                     mt_arena *mem, mt_realised *out, mt_err *err);
+/* A realisation of a density whose period exceeds the duration. Fails: MT_E_USAGE (too many
+ * lines are needed), as mt_signal_of_psd. */
+mt_status mt_realise_psd(const mt_psd *psd, double duration_s, unsigned long seed,
+                         mt_arena *mem, mt_signal *out, mt_err *err);
+/* The signals as inputs that accelerate the ground along an axis: inputs[n]. */
+void mt_realise_inputs(const mt_realised *r, int axis, mt_sim_input *inputs);
+
 #endif

@@ -16,19 +16,6 @@
  * joints by the least change; the drift is reported. The equations have no stabilising terms
  * (Baumgarte constants would add stiffness and damping).
  */
-typedef enum mt_sim_push {
-    MT_SIM_FORCE, /* at a sensor's channel, along its global axis [N, N m] */
-    MT_SIM_BASE,  /* acceleration of the ground along an axis [m/s^2] */
-    MT_SIM_MOVE   /* the driven joint's coordinate, from its held position [rad, m] */
-} mt_sim_push;
-
-typedef struct mt_sim_input {
-    mt_sim_push push;
-    int at;    /* FORCE: channel; BASE: axis 0..2 */
-    int slope; /* BASE: the signal is the acceleration (0), velocity (1) or position (2) */
-    const mt_signal *signal;
-} mt_sim_input;
-
 /* State at the beginning or at the end of a motion. */
 typedef struct mt_sim_start {
     mt_placement at;

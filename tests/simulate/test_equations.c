@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-#include "simulate/accelerate.h"
+#include "simulate/step.h"
 #include "simulate/motions.h"
 
 /* A start with something moving in every direction: a pseudo-random velocity, projected. */
