@@ -2,7 +2,7 @@
 /* What each record of a result holds, in the order of result.json. */
 #include "result/result.h"
 #include "study/goals.h"
-#include "study/objective_kinds.h"
+#include "study/objectives.h"
 
 /* In which unit people are shown the numbers beside it, which are in SI. */
 #define SHOWN_FIELDS                                                                       \
