@@ -15,12 +15,9 @@
 #include "base/possible.h"
 #include "base/workers.h"
 #include "cli/cli.h"
-#include "cli/shipped.h"
 #include "cli/terminal.h"
 #include "response/curve.h"
 #include "study/study.h"
-
-enum { FORMATS = MT_FORMAT_SARIF + 1 };
 
 /* The tables that describe the command line. */
 
@@ -252,184 +249,6 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_VERSION, '\0', "version", NULL, 0U, "print the version"),
 };
 
-#define COMMAND(id, name_, operands_, least_, most_, summary_, details_) \
-    [id] = {.name = (name_),                                             \
-            .operands = (operands_),                                     \
-            .least = (least_),                                           \
-            .most = (most_),                                             \
-            .summary = (summary_),                                       \
-            .details = (details_)}
-
-const mt_command mt_commands[MT_CMD_IDS] = {
-    COMMAND(
-        MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write the results",
-        "Solves each study, prints a summary and writes the result into DIR/<study file name "
-        "without .json>/: result.json, recommendations.csv, report.html, timing.json, "
-        "trade.csv (of a trade study) and curves.csv (if the study lists responses). A run "
-        "that fails or is killed leaves the old result, or one that the next run repairs.\n"
-        "Several studies are answered one after the other, whatever happens to each. A table "
-        "at the end, and index.json and index.html in DIR, list what became of them.\n"
-        "After an interrupt (Ctrl-C) the best designs so far are written, and run.incomplete "
-        "of the result lists what is missing. --resume continues from the journal that every "
-        "run keeps while it works."),
-    COMMAND(MT_CMD_MERGE, "merge", "STUDY JOURNAL...", 2, -1,
-            "join the parts of a study's work",
-            "Reads the journals that `run --shard PART/PARTS` left in DIR/<study file name "
-            "without .json>.PART-of-PARTS.journal, does the remaining work, and prints and "
-            "writes what `run` would have printed and written. A journal of another study, "
-            "model, program or library is refused; the work of a damaged line is repeated."),
-    COMMAND(MT_CMD_COMPARE, "compare", "STUDY...", 1, -1, "published against computed values",
-            "Solves each study and prints its published values beside the computed ones, with "
-            "differences, roles and sources. Writes no files. The exit status is 0 if all "
-            "values hold, and 1 otherwise."),
-    COMMAND(
-        MT_CMD_MODES, "modes", "MODEL", 1, 1, "natural frequencies and mode shapes",
-        "Prints the modes of each configuration: rigid-body, flexible, unstable and undecided "
-        "ones (rounding hides whether such a mode is stable, and it has no index). Each has a "
-        "bound of the error of its frequency (in JSON and CSV; in the table if it exceeds 1e-6 "
-        "of the frequency) and its residual and orthogonality relative to rounding (about 1 is "
-        "perfect). Redundant joints and the way to the equilibrium are listed. Shapes are "
-        "mass-normalised. Names of modes are shown if --set changes nothing."),
-    COMMAND(
-        MT_CMD_MAC, "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2, 2,
-        "pair and correlate two sets of modes",
-        "Compares shapes at the sensors that both models have, pairs the modes one to one, and "
-        "compares repeated modes as subspaces. Beside displacements, a rotation counts as its "
-        "arc at the length of the first model. The configuration may be omitted if a model has "
-        "only one. The default number of modes is that of the common sensor channels."),
-    COMMAND(MT_CMD_SWEEP, "sweep", "MODEL", 1, 1,
-            "positions and frequencies over a range of motion",
-            "Drives a joint through a range (--drive) and prints at each position the "
-            "coordinate of every joint, its ratio to the driven one (an exact derivative), "
-            "what holds the joint, and with --modes the natural frequencies by index (default: "
-            "6). If a limit position ends the range, the positions before it are printed, a "
-            "message names the limit, and the exit status is 3."),
-    COMMAND(
-        MT_CMD_SIMULATE, "simulate", "MODEL", 1, 1, "motion in time, of any amplitude",
-        "Integrates the nonlinear equations of motion of one configuration, and so checks "
-        "what the other commands compute for small motions. Where bodies only slide along "
-        "fixed lines and turn about fixed axes, and all forces grow in proportion, the "
-        "equations are linear: then the motion is exact, by the matrix exponential, and the "
-        "last lines say so. The motion begins at rest in "
-        "equilibrium unless --start, --rate or --mode say otherwise; --input, --sine, "
-        "--sweep, --random and --vibration excite it. Prints the outputs over time and "
-        "what they show: for a free motion its turns and its tones (frequency, damping, "
-        "amplitude), under a sine the steady amplitudes and phases, the balance of energy, "
-        "and the largest drift of a joint in a step before it was corrected.\n"
-        "Springs, viscous dampers, loads and masses are those of the model; bars and beams "
-        "of consistent mass move their mass with their frame. Where springs are so stiff that "
-        "their vibrations are far faster than the motion, steps solve these beforehand.\n"
-        "After an interrupt (Ctrl-C), or at the end of --time, the motion so far is "
-        "printed, and the exit status is 130 or 1. The exit status is 3 if the motion "
-        "reaches a dead centre, or if an input acts in a direction without mass."),
-    COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
-            "change of each frequency per per cent of each parameter",
-            "Prints exact derivatives of the first natural frequencies (default: 6): the "
-            "change in Hz for 1 % more of a parameter. Repeated modes have directional "
-            "derivatives, given as a set."),
-    COMMAND(
-        MT_CMD_RESPONSE, "response", "MODEL", 1, 1,
-        "frequency response to forces and a moving ground",
-        "Prints the frequency response of each output to each input, about the equilibrium, "
-        "with the model's damping: peaks and antiresonances first, then magnitude and phase "
-        "over frequency. The phase is that of the output against the input, negative if the "
-        "output lags. A resonance without damping has no height, which a note says.\n"
-        "With --vibration it prints for each output the RMS of the response to the random "
-        "parts of a profile, the largest amplitude under each tone, and the peak of both.\n"
-        "A configuration that is unstable, has motions that grow, or whose stability rounding "
-        "hides, is refused; so is the force of a joint that is redundant with others."),
-    COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
-            "masses, mobility and redundancies of each configuration",
-            "Prints for each configuration, in the position about which it is linearised, the "
-            "total mass, its centre and inertia, the degrees of freedom, and the sets of "
-            "redundant joints. Where a number of the model depends on a sign, an axis or an "
-            "order of bodies (preloads, free angles, moments, gear ratios, products of "
-            "inertia, sections, bushings), it states how the number is understood."),
-    COMMAND(MT_CMD_SHOW, "show", "MODEL|RESULT.json", 1, 1, "the mechanism in three dimensions",
-            "Prints a page that opens in any browser and needs no other file. It shows bodies "
-            "with their ellipsoids of inertia, links, joints with their axes and their "
-            "distance from their bodies, springs, dampers and sensors; the lowest 12 vibration "
-            "modes in motion, with the share of energy of every spring and body; and the range "
-            "of a driven joint. For a result, or its folder, it shows the original design and "
-            "the recommended ones, with the model that apply finds.\n"
-            "--format json prints what the page draws, --svg a still picture. A configuration "
-            "that cannot be analysed is drawn as far as possible, and a message says why."),
-    COMMAND(MT_CMD_REPORT, "report", "RESULT.json", 1, 1, "a result as text, CSV or HTML",
-            "Prints the summary that run printed (--format csv: recommendations.csv, html: "
-            "report.html, json: the result) from the result, or its folder, alone. It needs no "
-            "study and solves nothing; only the page's view of the mechanism needs the model, "
-            "and is omitted if apply would not find it. --output writes all files again into "
-            "DIR/<study file name without .json>/, as run does, except timing.json, which is "
-            "copied if it lies beside the result. A result.json whose neighbours were changed "
-            "or belong to another run is refused; a copy by itself is read."),
-    COMMAND(MT_CMD_EXPLAIN, "explain", "RESULT.json", 1, 1,
-            "what moves each goal, what limits the design, at what price",
-            "Prints for each goal of a recommendation the parameters that move it, the "
-            "strongest first: the effect of 1 % more of each, and how far it may still go "
-            "within its bounds. The bounds, bands and limits that hold the design follow, with "
-            "their prices. It needs the result, or its folder, alone and solves nothing. "
-            "--format csv has one row for each goal and parameter."),
-    COMMAND(
-        MT_CMD_APPLY, "apply", "RESULT.json", 1, 1, "the model with the recommended values",
-        "Prints the model file with the recommended values; the rest of its text stays as it "
-        "is. The model is found from the result, or its folder, and must be the one that was "
-        "solved (same SHA-256) unless --model names it. A result.json whose neighbours were "
-        "changed or belong to another run is refused; a copy by itself is read."),
-    COMMAND(
-        MT_CMD_DIFF, "diff", "RESULT RESULT", 2, 2, "differences between two results",
-        "Compares two results (each a result.json or its folder), also of different studies or "
-        "versions of the program: status, designs with their parameters, objectives, "
-        "frequencies, MAC and goals, certificates and all else. It lists what only one of them "
-        "has. How the answers were made (versions, seed, evaluations, digests of the files) is "
-        "listed but does not count as a difference; sentences and measures of rounding are not "
-        "compared.\n"
-        "The text omits what follows from what it shows (errors, derivatives, changes); JSON "
-        "and CSV have everything, with JSON pointers into both files. The exit status is 0 if "
-        "the answers are equal, 1 if they differ, and 2 or more if they cannot be compared."),
-    COMMAND(MT_CMD_CHECK, "check", "FILE...", 1, -1,
-            "validate model, study, result, aircraft and profile files",
-            "Reads each file by its \"format\" and prints every problem as file:line:column: "
-            "error: /json/pointer: message.\n"
-            "Warnings concern suspicious values: numbers that look like other units, joints "
-            "off their links, bands that no mode comes near. Notes state what to know of every "
-            "configuration, or of those that a study names: free motions, unstable directions, "
-            "redundant joints.\n"
-            "--format json has the same by members (file, line, column, pointer, severity, "
-            "message), --format sarif as SARIF 2.1.0 for code hosts and editors. Paths are "
-            "relative to the current folder, which should be that of the repository."),
-    COMMAND(MT_CMD_INIT, "init", "[DIR]", 0, 1, "a model and a study to begin with",
-            "Writes model.json, study.json and their schemas, which let an editor complete "
-            "them, into the folder (default: the current one), creates it if necessary, and "
-            "prints the paths. Each part of the model has a description; the study asks a "
-            "question that it answers within seconds. --kind chooses among models. If one of "
-            "the files exists with other "
-            "contents, nothing is written."),
-    COMMAND(MT_CMD_EXAMPLES, "examples", "[NAME...]", 0, -1,
-            "the studies that are part of the program",
-            "Lists the studies. With names: writes these studies into DIR/studies, and the "
-            "models, references and schemas that they name beside it, and prints the paths. If "
-            "one of the files exists with other contents, nothing is written."),
-    COMMAND(MT_CMD_SCHEMA, "schema", "[NAME]", 0, 1, "the JSON Schemas of all files",
-            "Lists the schemas. With a name (model, study, result, ...): prints that schema."),
-    COMMAND(MT_CMD_PROFILE, "profile", "[PROFILE]", 0, 1, "what a vibration profile requires",
-            "Prints the breakpoints of the random parts of a profile with their slopes and "
-            "overall RMS, and its tones, with the harmonics of rotors in Hz, each with origin "
-            "and source. A message lists what is assumed, or unconfirmed by a public document. "
-            "PROFILE is a file, or the name of a profile that is part of the program; without "
-            "it, these are listed.\n"
-            "--spectrum prints the response of one mass on a spring whose base follows the "
-            "profile: the RMS of its absolute acceleration, with a bound of the error; the "
-            "largest peaks of the tones over their ranges, proven; and both combined by the "
-            "profile's rule (default: 3 times the RMS plus the sum of all tones). --format csv "
-            "has one row for each segment and tone, or for each natural frequency."),
-    COMMAND(MT_CMD_HELP, "help", "[TOPIC]", 0, 1,
-            "what the documents say of a command or a word",
-            "Prints the sections of the documents about a topic: a command, or a member of a "
-            "model, a study or a result (avoid, bushing, margin_percent). Explanations come "
-            "first, then the reference of the file formats. Without a topic: lists all "
-            "commands and topics."),
-};
-
 const mt_exit mt_exits[MT_EXITS] = {
     {MT_EXIT_DONE, "done, all goals met (with --verify: all published values hold)"},
     {MT_EXIT_GOALS, "done, or out of time, goals not met (diff: the answers differ)"},
@@ -469,8 +288,10 @@ static bool takes(int command, int option)
            option == MT_OPT_MANUAL;
 }
 
-static mt_status unknown_option(int command, const char *name, size_t length, mt_err *err)
+static mt_status unknown_option(const mt_args *args, const char *name, size_t length,
+                                mt_err *err)
 {
+    const int command = args->command;
     const char *names[MT_OPT_IDS];
     char given[SUGGESTION_TEXT];
     char suggestion[SUGGESTION_TEXT];
@@ -486,7 +307,7 @@ static mt_status unknown_option(int command, const char *name, size_t length, mt
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (strcmp(given, mt_options[i].name) == 0 && command != MT_CMD_NONE) {
             return mt_fail(err, MT_E_USAGE, "\"%s\" has no option \"--%s\"",
-                           mt_commands[command].name, given);
+                           args->commands[command]->name, given);
         }
     }
     return mt_fail(err, MT_E_USAGE, "unknown option \"--%s\"%s", given,
@@ -507,7 +328,6 @@ static mt_status read_count(const char *s, const char *option, int most, int *ou
     return MT_OK;
 }
 
-/* A number from 0 up to 1. */
 /* A number from 0 up to, and without, `most`. */
 static bool read_below(const char *s, double most, double *out)
 {
@@ -566,6 +386,32 @@ static mt_status read_seed(const char *s, const char *option, unsigned long *out
     return MT_OK;
 }
 
+/* A size on the command line: a whole number of bytes, or with k, M, G, T (1024 each). */
+static mt_status read_size(const char *text, uint64_t *bytes, mt_err *err)
+{
+    static const char units[] = "kMGT";
+    const uint64_t kib = 1024;
+    const uint64_t least = kib * kib;
+    const uint64_t most = (uint64_t)1 << 50U;
+    uint64_t size = 0;
+    const char *s = text;
+    for (; *s >= '0' && *s <= '9' && size <= most; s++) {
+        size = 10 * size + (uint64_t)(*s - '0');
+    }
+    const char *const unit = s == text || *s == '\0' ? NULL : strchr(units, *s);
+    for (const char *u = units; unit != NULL && u <= unit && size <= most; u++) {
+        size *= kib;
+    }
+    s += unit == NULL ? 0 : 1;
+    if (*s != '\0' || size < least || size > most) {
+        return mt_fail(err, MT_E_USAGE,
+                       "--max-memory: \"%s\" is not a size from 1M to 1024T (\"500M\", \"8G\")",
+                       text);
+    }
+    *bytes = size;
+    return MT_OK;
+}
+
 /* "2/8": part 2 of 8. */
 static mt_status read_part(const char *s, const char *option, mt_args *out, mt_err *err)
 {
@@ -587,8 +433,7 @@ static mt_status read_part(const char *s, const char *option, mt_args *out, mt_e
     return MT_OK;
 }
 
-/* The word of --format for this format; NULL where the command does not take it. */
-static const char *format_of(int format, int command)
+const char *mt_format_of(int format, int command)
 {
     enum {
         SHOW = 1 << MT_CMD_SHOW,
@@ -599,7 +444,7 @@ static const char *format_of(int format, int command)
     static const struct {
         const char *name;
         unsigned commands;
-    } formats[FORMATS] = {
+    } formats[MT_FORMATS] = {
         [MT_FORMAT_TEXT] = {"text", MT_ALL_COMMANDS & ~(unsigned)SHOW},
         [MT_FORMAT_JSON] = {"json", MT_ALL_COMMANDS & ~(unsigned)PROSE},
         [MT_FORMAT_CSV] = {"csv", MT_ALL_COMMANDS & ~(unsigned)(SHOW | MODEL | PROSE)},
@@ -634,12 +479,12 @@ static mt_status read_word(const char *s, const char *option, const char *const 
 
 static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
 {
-    const char *names[FORMATS];
-    mt_format of[FORMATS];
+    const char *names[MT_FORMATS];
+    mt_format of[MT_FORMATS];
     int at = 0;
     int n = 0;
-    for (int i = 0; i < FORMATS; i++) {
-        const char *const known = format_of(i, command);
+    for (int i = 0; i < MT_FORMATS; i++) {
+        const char *const known = mt_format_of(i, command);
         if (known != NULL) {
             of[n] = (mt_format)i;
             names[n++] = known;
@@ -744,7 +589,7 @@ static mt_status store_option_value(mt_args *args, int option, const char *value
     case MT_OPT_SHARD:
         return read_part(value, o->name, args, err);
     case MT_OPT_MAX_MEMORY:
-        return mt_limits_read_size(value, &args->max_memory, err);
+        return read_size(value, &args->max_memory, err);
     case MT_OPT_REPORT:
         return read_report(value, o->name, &args->no_report, err);
     case MT_OPT_PROGRESS:
@@ -772,7 +617,7 @@ static mt_status read_long(mt_args *args, int argc, char *const argv[], int *at,
         }
     }
     if (option == MT_OPT_NONE) {
-        return unknown_option(args->command, name, length, err);
+        return unknown_option(args, name, length, err);
     }
     const bool attached = name[length] == '=';
     if (mt_options[option].value == NULL) {
@@ -807,10 +652,10 @@ static mt_status read_short(mt_args *args, int argc, char *const argv[], int *at
     return mt_fail(err, MT_E_USAGE, "unknown option \"-%s\"", text);
 }
 
-int mt_command_named(const char *name)
+int mt_command_named(const mt_command *const *commands, const char *name)
 {
     for (int i = 0; i < MT_CMD_IDS; i++) {
-        if (strcmp(mt_commands[i].name, name) == 0) {
+        if (strcmp(commands[i]->name, name) == 0) {
             return i;
         }
     }
@@ -821,12 +666,12 @@ static mt_status read_command(mt_args *args, const char *name, mt_err *err)
 {
     const char *names[MT_CMD_IDS];
     char suggestion[SUGGESTION_TEXT];
-    args->command = mt_command_named(name);
+    args->command = mt_command_named(args->commands, name);
     if (args->command != MT_CMD_NONE) {
         return MT_OK;
     }
     for (int i = 0; i < MT_CMD_IDS; i++) {
-        names[i] = mt_commands[i].name;
+        names[i] = args->commands[i]->name;
     }
     return mt_fail(err, MT_E_USAGE, "unknown command \"%s\"%s", name,
                    did_you_mean(name, names, MT_CMD_IDS, "", suggestion));
@@ -841,7 +686,7 @@ static mt_status check_operands(const mt_args *args, mt_err *err)
     if (args->command == MT_CMD_NONE) {
         return mt_fail(err, MT_E_USAGE, "a command is missing");
     }
-    const mt_command *const c = &mt_commands[args->command];
+    const mt_command *const c = args->commands[args->command];
     if (args->n_operands < c->least) {
         return mt_fail(err, MT_E_USAGE, "\"%s\" needs %s", c->name, c->operands);
     }
@@ -868,11 +713,12 @@ static void group_repeated_values(mt_args *args)
     }
 }
 
-mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
+mt_status mt_args_parse(int argc, char *const argv[], const mt_command *const *commands,
+                        mt_args *out, mt_err *err)
 {
     const size_t room = argc > 0 ? (size_t)argc : 1;
     bool operands_only = false;
-    *out = (mt_args){.command = MT_CMD_NONE, .rank = 1, .threads = 1};
+    *out = (mt_args){.commands = commands, .command = MT_CMD_NONE, .rank = 1, .threads = 1};
     out->operands = calloc(room, sizeof *out->operands);
     out->pool = calloc(room, sizeof *out->pool);
     out->repeats = calloc(room, sizeof *out->repeats);
@@ -908,233 +754,8 @@ void mt_args_free(mt_args *args)
     *args = (mt_args){.command = MT_CMD_NONE};
 }
 
-/*
- * Scripts for the shells, from the tables behind --help. What the value of an option may be is
- * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL and PROFILE a
- * file; of another value nothing is known.
- */
-
-static const char separators[] = "|";
-
-static bool is_choice(const mt_option *o)
+mt_io_options mt_cli_io(const mt_args *args)
 {
-    return o->value != NULL && strchr(o->value, '|') != NULL;
-}
-
-static bool is_called(const mt_option *o, const char *value)
-{
-    return o->value != NULL && strcmp(o->value, value) == 0;
-}
-
-static bool is_file(const mt_option *o)
-{
-    return is_called(o, "MODEL") || is_called(o, "PROFILE");
-}
-
-/* The words of "a|b|c", a blank between them. */
-static void add_choice(const char *value, mt_text *out)
-{
-    for (const char *at = value; *at != '\0'; at++) {
-        mt_text_add_n(out, strchr(separators, *at) != NULL ? " " : at, 1);
-    }
-}
-
-/* -o --output, for a pattern of `case`. */
-static void add_pattern(const mt_option *o, mt_text *out)
-{
-    if (o->letter != '\0') {
-        mt_text_addf(out, "-%c|", o->letter);
-    }
-    mt_text_addf(out, "--%s", o->name);
-}
-
-static void bash_options(int command, mt_text *out)
-{
-    for (int i = 0; i < MT_OPT_IDS; i++) {
-        if (mt_option_is_of(i, command)) {
-            mt_text_addf(out, " --%s", mt_options[i].name);
-        }
-    }
-}
-
-/* What the program has of the command's operands by name; NULL: they are files. */
-static const mt_shipped_kind *shipped_of(int command)
-{
-    return command == MT_CMD_EXAMPLES ? &mt_shipped_examples
-           : command == MT_CMD_SCHEMA ? &mt_shipped_schemas
-                                      : NULL;
-}
-
-/* The words of --format, a blank between them. */
-static void add_formats(int command, mt_text *out)
-{
-    const char *between = "";
-    for (int i = 0; i < FORMATS; i++) {
-        const char *const name = format_of(i, command);
-        if (name != NULL) {
-            mt_text_addf(out, "%s%s", between, name);
-            between = " ";
-        }
-    }
-}
-
-/* What stands behind an option that takes a value. */
-static void bash_values(mt_text *out)
-{
-    mt_text_add(out, "    case $previous in\n");
-    for (int i = 0; i < MT_OPT_IDS; i++) {
-        const mt_option *const o = &mt_options[i];
-        if (o->value == NULL) {
-            continue;
-        }
-        mt_text_add(out, "    ");
-        add_pattern(o, out);
-        if (i == MT_OPT_FORMAT) {
-            mt_text_add(out, ") COMPREPLY=($(compgen -W \"$formats\" -- \"$current\")); "
-                             "return ;;\n");
-        } else if (is_choice(o)) {
-            mt_text_add(out, ") COMPREPLY=($(compgen -W '");
-            add_choice(o->value, out);
-            mt_text_add(out, "' -- \"$current\")); return ;;\n");
-        } else if (is_called(o, "DIR")) {
-            mt_text_add(out, ") COMPREPLY=($(compgen -d -- \"$current\")); return ;;\n");
-        } else if (is_file(o)) {
-            mt_text_add(out, ") ;;\n");
-        } else {
-            mt_text_add(out, ") return ;;\n");
-        }
-    }
-    mt_text_add(out, "    esac\n");
-}
-
-static void bash(mt_text *out)
-{
-    mt_text_add(out,
-                "# modetune(1) in bash: commands, options, values, JSON files\n"
-                "_modetune() {\n"
-                "    local current=${COMP_WORDS[COMP_CWORD]} "
-                "previous=${COMP_WORDS[COMP_CWORD-1]} command= words= formats= names= word\n"
-                "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
-                "        case $word in\n        ");
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(out, "%s%s", i == 0 ? "" : "|", mt_commands[i].name);
-    }
-    mt_text_add(out, ") command=$word; break ;;\n        esac\n    done\n    COMPREPLY=()\n");
-    mt_text_add(out, "    case $command in\n    '') words='");
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(out, "%s%s", i == 0 ? "" : " ", mt_commands[i].name);
-    }
-    bash_options(MT_CMD_NONE, out);
-    mt_text_add(out, "' ;;\n");
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(out, "    %s) words='", mt_commands[i].name);
-        bash_options(i, out);
-        mt_text_add(out, "' formats='");
-        add_formats(i, out);
-        if (shipped_of(i) != NULL) {
-            mt_text_add(out, "' names='");
-            mt_shipped_names(shipped_of(i), out);
-        }
-        mt_text_add(out, "' ;;\n");
-    }
-    mt_text_add(out, "    esac\n");
-    bash_values(out);
-    mt_text_add(out, "    if [[ -z $command || $current == -* ]]; then\n"
-                     "        COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
-                     "    elif [[ -n $names ]]; then\n"
-                     "        COMPREPLY=($(compgen -W \"$names\" -- \"$current\"))\n"
-                     "    else\n"
-                     "        COMPREPLY=($(compgen -f -X '!*.json' -- \"$current\") "
-                     "$(compgen -d -- \"$current\"))\n"
-                     "    fi\n"
-                     "}\n"
-                     "complete -o filenames -F _modetune modetune\n");
-}
-
-/* The first clause of a text between apostrophes, without what zsh would obey there. */
-static void zsh_text(const char *text, mt_text *out)
-{
-    const char *const sentence = strstr(text, ". ");
-    const char *const clause = text + strcspn(text, ";:(");
-    const char *const end = sentence == NULL || clause < sentence ? clause : sentence;
-    for (const char *at = text; at < end; at++) {
-        if (*at == '\'') {
-            mt_text_add(out, "'\\''");
-        } else if (strchr("[]\\", *at) == NULL && !(at + 1 == end && *at == ' ')) {
-            mt_text_add_n(out, at, 1);
-        }
-    }
-}
-
-static void zsh_option(const mt_option *o, int command, mt_text *out)
-{
-    mt_text_addf(out, " \\\n            '%s--%s%s[", o->repeats ? "*" : "", o->name,
-                 o->value == NULL ? "" : "=");
-    zsh_text(o->help, out);
-    mt_text_add(out, "]");
-    if (is_choice(o)) {
-        mt_text_addf(out, ":%s:(", o->name);
-        if (o == &mt_options[MT_OPT_FORMAT]) {
-            add_formats(command, out);
-        } else {
-            add_choice(o->value, out);
-        }
-        mt_text_add(out, ")");
-    } else if (o->value != NULL) {
-        const char *const how = is_called(o, "DIR") ? "_files -/"
-                                : is_file(o)        ? "_files -g \"*.json\""
-                                                    : "";
-        mt_text_addf(out, ":%s:%s", o->name, how);
-    }
-    mt_text_add(out, "'");
-}
-
-static void zsh_options(int command, mt_text *out)
-{
-    for (int i = 0; i < MT_OPT_IDS; i++) {
-        if (mt_option_is_of(i, command)) {
-            zsh_option(&mt_options[i], command, out);
-        }
-    }
-}
-
-static void zsh(mt_text *out)
-{
-    mt_text_add(out, "#compdef modetune\n"
-                     "# modetune(1) in zsh: commands, options, values, JSON files\n"
-                     "_modetune() {\n"
-                     "    local curcontext=$curcontext state line\n"
-                     "    local -a commands=(\n");
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(out, "        '%s:", mt_commands[i].name);
-        zsh_text(mt_commands[i].summary, out);
-        mt_text_add(out, "'\n");
-    }
-    mt_text_add(out, "    )\n    _arguments -C");
-    zsh_options(MT_CMD_NONE, out);
-    mt_text_add(out, " \\\n            '1:command:->command' '*::argument:->argument'\n"
-                     "    case $state in\n"
-                     "    command) _describe command commands ;;\n"
-                     "    argument)\n        case $line[1] in\n");
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(out, "        %s) _arguments", mt_commands[i].name);
-        zsh_options(i, out);
-        if (shipped_of(i) != NULL) {
-            mt_text_addf(out, " \\\n            '*:%s:(", shipped_of(i)->what);
-            mt_shipped_names(shipped_of(i), out);
-            mt_text_add(out, ")' ;;\n");
-        } else {
-            mt_text_add(out, " \\\n            '*:file:_files -g \"*.json\"' ;;\n");
-        }
-    }
-    mt_text_add(out, "        esac ;;\n    esac\n}\n_modetune \"$@\"\n");
-}
-
-void mt_completion(mt_shell shell, mt_text *out)
-{
-    if (shell == MT_SHELL_BASH) {
-        bash(out);
-    } else {
-        zsh(out);
-    }
+    const mt_io_options opt = {.root = args->value[MT_OPT_ROOT]};
+    return opt;
 }

@@ -6,12 +6,9 @@
 #include <stdint.h>
 
 #include "base/text.h"
+#include "io/options.h"
 
 typedef enum mt_shell { MT_SHELL_BASH, MT_SHELL_ZSH, MT_SHELL_COUNT } mt_shell;
-
-/* A script for this shell that completes commands, options, their values and files, from the
- * tables of --help. */
-void mt_completion(mt_shell shell, mt_text *out);
 
 /*
  * The command line in tables of commands, options and exit statuses, which drive
@@ -84,30 +81,36 @@ typedef enum mt_option_id {
     MT_OPT_IDS
 } mt_option_id;
 
-typedef enum mt_command_id {
-    MT_CMD_RUN,
-    MT_CMD_MERGE,
-    MT_CMD_COMPARE,
-    MT_CMD_MODES,
-    MT_CMD_MAC,
-    MT_CMD_SWEEP,
-    MT_CMD_SIMULATE,
-    MT_CMD_SENSITIVITY,
-    MT_CMD_RESPONSE,
-    MT_CMD_INFO,
-    MT_CMD_SHOW,
-    MT_CMD_REPORT,
-    MT_CMD_EXPLAIN,
-    MT_CMD_APPLY,
-    MT_CMD_DIFF,
-    MT_CMD_CHECK,
-    MT_CMD_INIT,
-    MT_CMD_EXAMPLES,
-    MT_CMD_SCHEMA,
-    MT_CMD_PROFILE,
-    MT_CMD_HELP,
-    MT_CMD_IDS
-} mt_command_id;
+/*
+ * The commands: MT_CMD_<ID> and the record mt_command_<name>, which stands below its function
+ * in the command's own file. One list makes the identifiers, the declarations and the table.
+ */
+#define MT_COMMAND_LIST(X)      \
+    X(RUN, run)                 \
+    X(MERGE, merge)             \
+    X(COMPARE, compare)         \
+    X(MODES, modes)             \
+    X(MAC, mac)                 \
+    X(SWEEP, sweep)             \
+    X(SIMULATE, simulate)       \
+    X(SENSITIVITY, sensitivity) \
+    X(RESPONSE, response)       \
+    X(INFO, info)               \
+    X(SHOW, show)               \
+    X(REPORT, report)           \
+    X(EXPLAIN, explain)         \
+    X(APPLY, apply)             \
+    X(DIFF, diff)               \
+    X(CHECK, check)             \
+    X(INIT, init)               \
+    X(EXAMPLES, examples)       \
+    X(SCHEMA, schema)           \
+    X(PROFILE, profile)         \
+    X(HELP, help)
+
+#define MT_COMMAND_ENUM(id, name) MT_CMD_##id,
+typedef enum mt_command_id { MT_COMMAND_LIST(MT_COMMAND_ENUM) MT_CMD_IDS } mt_command_id;
+#undef MT_COMMAND_ENUM
 
 enum { MT_CMD_NONE = -1, MT_OPT_NONE = -1 };
 #define MT_ALL_COMMANDS ((1U << (unsigned)MT_CMD_IDS) - 1U)
@@ -121,6 +124,8 @@ typedef struct mt_option {
     bool repeats;      /* may be given more than once */
 } mt_option;
 
+typedef struct mt_args mt_args;
+
 typedef struct mt_command {
     const char *name;
     const char *operands; /* "STUDY..." */
@@ -128,6 +133,9 @@ typedef struct mt_command {
     int most;             /* -1: any number */
     const char *summary;  /* one line */
     const char *details;  /* paragraphs, one a line */
+    /* Append the standard output to `out`, write messages and problems to standard error;
+     * returns the exit status. */
+    int (*run)(const mt_args *args, mt_text *out);
 } mt_command;
 
 typedef struct mt_exit {
@@ -137,15 +145,14 @@ typedef struct mt_exit {
 enum { MT_EXITS = 6 };
 
 extern const mt_option mt_options[MT_OPT_IDS];
-extern const mt_command mt_commands[MT_CMD_IDS];
-/* The command of that name; MT_CMD_NONE: none. */
-int mt_command_named(const char *name);
+/* The command of that name among these [MT_CMD_IDS]; MT_CMD_NONE: none. */
+int mt_command_named(const mt_command *const *commands, const char *name);
 extern const mt_exit mt_exits[MT_EXITS];
 
 /* True where the command takes the option; MT_CMD_NONE: the program. */
 bool mt_option_is_of(int option, int command);
 
-/* The formats of --format; mt_format_of lists those of a command. */
+/* The formats of --format. */
 typedef enum mt_format {
     MT_FORMAT_TEXT,
     MT_FORMAT_JSON,
@@ -153,6 +160,10 @@ typedef enum mt_format {
     MT_FORMAT_HTML,
     MT_FORMAT_SARIF
 } mt_format;
+enum { MT_FORMATS = MT_FORMAT_SARIF + 1 };
+
+/* The word of --format for this format; NULL where the command does not take it. */
+const char *mt_format_of(int format, int command);
 
 /* The forms of --progress. AUTO: a line that is rewritten on a terminal, else a plain line now
  * and then. */
@@ -175,8 +186,9 @@ typedef struct mt_values {
     const char **value; /* [n] in order */
 } mt_values;
 
-typedef struct mt_args {
-    int command; /* mt_command_id, MT_CMD_NONE */
+struct mt_args {
+    const mt_command *const *commands; /* [MT_CMD_IDS] those that there are */
+    int command;                       /* mt_command_id, MT_CMD_NONE */
     mt_format format;
     mt_progress_form progress;
     bool no_report; /* --report none */
@@ -213,15 +225,19 @@ typedef struct mt_args {
     const char **operands; /* [argc] */
     /* heap: file of the first operand, where that is the folder of a result */
     char *result_path;
-} mt_args;
+};
 
 /**
- * Read argv[1..argc-1]. Options may stand anywhere after the command; "--" ends them;
- * "--name=value", "-oDIR" are fine. Fails: MT_E_USAGE (err: the first fault, with "did you
- * mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and --version take precedence
- * over missing operands.
+ * Read argv[1..argc-1], with these commands [MT_CMD_IDS]. Options may stand anywhere after the
+ * command; "--" ends them; "--name=value", "-oDIR" are fine. Fails: MT_E_USAGE (err: the first
+ * fault, with "did you mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and
+ * --version take precedence over missing operands.
  */
-mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err);
+mt_status mt_args_parse(int argc, char *const argv[], const mt_command *const *commands,
+                        mt_args *out, mt_err *err);
 void mt_args_free(mt_args *args);
+
+/* How files are read, as the options ask. */
+mt_io_options mt_cli_io(const mt_args *args);
 
 #endif

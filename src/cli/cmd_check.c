@@ -572,7 +572,7 @@ static int check_file(const mt_args *args, const char *path, output *to)
     return mt_cli_loaded(rc, &fresh, &err);
 }
 
-int mt_cmd_check(const mt_args *args, mt_text *out)
+static int run_check(const mt_args *args, mt_text *out)
 {
     const bool sarif = args->format == MT_FORMAT_SARIF;
     const bool json = args->format == MT_FORMAT_JSON;
@@ -608,3 +608,22 @@ int mt_cmd_check(const mt_args *args, mt_text *out)
     mt_diagnostics_free(&to.told.of_others);
     return code;
 }
+
+const mt_command mt_command_check = {
+    .name = "check",
+    .operands = "FILE...",
+    .least = 1,
+    .most = -1,
+    .summary = "validate model, study, result, aircraft and profile files",
+    .details =
+        "Reads each file by its \"format\" and prints every problem as file:line:column: "
+        "error: /json/pointer: message.\n"
+        "Warnings concern suspicious values: numbers that look like other units, joints "
+        "off their links, bands that no mode comes near. Notes state what to know of every "
+        "configuration, or of those that a study names: free motions, unstable directions, "
+        "redundant joints.\n"
+        "--format json has the same by members (file, line, column, pointer, severity, "
+        "message), --format sarif as SARIF 2.1.0 for code hosts and editors. Paths are "
+        "relative to the current folder, which should be that of the repository.",
+    .run = run_check,
+};

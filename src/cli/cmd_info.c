@@ -712,7 +712,7 @@ static mt_status show_configuration_info(const mt_args *args, view *v, const sin
     return MT_OK;
 }
 
-int mt_cmd_info(const mt_args *args, mt_text *out)
+static int run_info(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
@@ -764,3 +764,18 @@ done:
     mt_loaded_model_free(&s);
     return code;
 }
+
+const mt_command mt_command_info = {
+    .name = "info",
+    .operands = "MODEL",
+    .least = 1,
+    .most = 1,
+    .summary = "masses, mobility and redundancies of each configuration",
+    .details =
+        "Prints for each configuration, in the position about which it is linearised, the "
+        "total mass, its centre and inertia, the degrees of freedom, and the sets of "
+        "redundant joints. Where a number of the model depends on a sign, an axis or an "
+        "order of bodies (preloads, free angles, moments, gear ratios, products of "
+        "inertia, sections, bushings), it states how the number is understood.",
+    .run = run_info,
+};

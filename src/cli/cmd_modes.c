@@ -779,7 +779,7 @@ static int each(sink *to, const mt_loaded_model *s)
     return code;
 }
 
-int mt_cmd_modes(const mt_args *args, mt_text *out)
+static int run_modes(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
@@ -813,6 +813,22 @@ done:
     mt_loaded_model_free(&s);
     return code;
 }
+
+const mt_command mt_command_modes = {
+    .name = "modes",
+    .operands = "MODEL",
+    .least = 1,
+    .most = 1,
+    .summary = "natural frequencies and mode shapes",
+    .details =
+        "Prints the modes of each configuration: rigid-body, flexible, unstable and undecided "
+        "ones (rounding hides whether such a mode is stable, and it has no index). Each has a "
+        "bound of the error of its frequency (in JSON and CSV; in the table if it exceeds 1e-6 "
+        "of the frequency) and its residual and orthogonality relative to rounding (about 1 is "
+        "perfect). Redundant joints and the way to the equilibrium are listed. Shapes are "
+        "mass-normalised. Names of modes are shown if --set changes nothing.",
+    .run = run_modes,
+};
 
 /* Two sets of modes: paired and correlated at the sensors that both models have. */
 
@@ -1184,7 +1200,7 @@ static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err
     return write_mac_text(c, out, err);
 }
 
-int mt_cmd_mac(const mt_args *args, mt_text *out)
+static int run_mac(const mt_args *args, mt_text *out)
 {
     comparison c = {.a = {.letter = "A"}, .b = {.letter = "B"}};
     mt_err err = {.code = MT_OK};
@@ -1207,3 +1223,17 @@ int mt_cmd_mac(const mt_args *args, mt_text *out)
     mt_arena_free(&c.mem);
     return code;
 }
+
+const mt_command mt_command_mac = {
+    .name = "mac",
+    .operands = "MODEL:CONFIGURATION MODEL:CONFIGURATION",
+    .least = 2,
+    .most = 2,
+    .summary = "pair and correlate two sets of modes",
+    .details =
+        "Compares shapes at the sensors that both models have, pairs the modes one to one, and "
+        "compares repeated modes as subspaces. Beside displacements, a rotation counts as its "
+        "arc at the length of the first model. The configuration may be omitted if a model has "
+        "only one. The default number of modes is that of the common sensor channels.",
+    .run = run_mac,
+};

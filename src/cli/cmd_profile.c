@@ -398,7 +398,7 @@ static int print(const mt_args *args, const view *s, mt_text *out)
     return MT_EXIT_DONE;
 }
 
-int mt_cmd_profile(const mt_args *args, mt_text *out)
+static int run_profile(const mt_args *args, mt_text *out)
 {
     mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
@@ -409,7 +409,8 @@ int mt_cmd_profile(const mt_args *args, mt_text *out)
         return mt_shipped_list(args, &mt_shipped_profiles, out);
     }
     mt_status rc = read_masses(args, &s.of, &err);
-    rc = rc == MT_OK ? mt_vibrated_load(args, args->operands[0], &v, &messages, &err) : rc;
+    rc = rc == MT_OK ? mt_shipped_load_profile(args, args->operands[0], &v, &messages, &err)
+                     : rc;
     int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {
         s.v = v;
@@ -420,3 +421,23 @@ int mt_cmd_profile(const mt_args *args, mt_text *out)
     mt_arena_free(&mem);
     return code;
 }
+
+const mt_command mt_command_profile = {
+    .name = "profile",
+    .operands = "[PROFILE]",
+    .least = 0,
+    .most = 1,
+    .summary = "what a vibration profile requires",
+    .details =
+        "Prints the breakpoints of the random parts of a profile with their slopes and "
+        "overall RMS, and its tones, with the harmonics of rotors in Hz, each with origin "
+        "and source. A message lists what is assumed, or unconfirmed by a public document. "
+        "PROFILE is a file, or the name of a profile that is part of the program; without "
+        "it, these are listed.\n"
+        "--spectrum prints the response of one mass on a spring whose base follows the "
+        "profile: the RMS of its absolute acceleration, with a bound of the error; the "
+        "largest peaks of the tones over their ranges, proven; and both combined by the "
+        "profile's rule (default: 3 times the RMS plus the sum of all tones). --format csv "
+        "has one row for each segment and tone, or for each natural frequency.",
+    .run = run_profile,
+};

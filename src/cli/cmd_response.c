@@ -5,6 +5,7 @@
 
 #include "base/format.h"
 #include "cli/cli.h"
+#include "cli/shipped.h"
 #include "cli/vibrated.h"
 #include "report/table.h"
 #include "response/response.h"
@@ -1028,7 +1029,8 @@ static int load_response_profile(sink *to)
     mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
     if (name != NULL) {
-        const mt_status rc = mt_vibrated_load(to->args, name, &to->profile, &messages, &err);
+        const mt_status rc =
+            mt_shipped_load_profile(to->args, name, &to->profile, &messages, &err);
         return mt_cli_loaded(rc, &messages, &err);
     }
     return to->args->all[MT_OPT_INPUT].n > 0
@@ -1039,7 +1041,7 @@ static int load_response_profile(sink *to)
                                &err);
 }
 
-int mt_cmd_response(const mt_args *args, mt_text *out)
+static int run_response(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     sink to = {.args = args,
@@ -1075,3 +1077,21 @@ done:
     mt_loaded_model_free(&s);
     return code;
 }
+
+const mt_command mt_command_response = {
+    .name = "response",
+    .operands = "MODEL",
+    .least = 1,
+    .most = 1,
+    .summary = "frequency response to forces and a moving ground",
+    .details =
+        "Prints the frequency response of each output to each input, about the equilibrium, "
+        "with the model's damping: peaks and antiresonances first, then magnitude and phase "
+        "over frequency. The phase is that of the output against the input, negative if the "
+        "output lags. A resonance without damping has no height, which a note says.\n"
+        "With --vibration it prints for each output the RMS of the response to the random "
+        "parts of a profile, the largest amplitude under each tone, and the peak of both.\n"
+        "A configuration that is unstable, has motions that grow, or whose stability rounding "
+        "hides, is refused; so is the force of a joint that is redundant with others.",
+    .run = run_response,
+};

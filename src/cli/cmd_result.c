@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The commands that read results: report, explain, apply and diff. */
+/* The commands that read results: explain, apply and diff. */
 #include "modetune/version.h"
 
 #include <math.h>
@@ -7,60 +7,23 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/cmd_run.h"
-#include "library/scene_designs.h"
 #include "report/explain.h"
 #include "report/table.h"
 #include "result/diff.h"
 
-/* modetune report: a result read back and told again, from itself alone; where its model is
- * found, pages show the mechanism, too. */
-
-/* The scene of the result's designs, where the model that was solved is found. Fails:
- * MT_E_MEMORY, MT_E_SYSTEM (a candidate cannot be read: the page would differ). */
-static mt_status find_scene(const mt_args *args, const mt_result *result, mt_text *scene,
-                            mt_err *err)
+/* The recommendation of --rank. Fails: MT_E_USAGE. */
+static mt_status find_recommendation(const mt_args *args, const mt_result *result,
+                                     const mt_recommendation **out, mt_err *err)
 {
-    const mt_io_options opt = mt_cli_io(args);
-    mt_file file = {.bytes = NULL};
-    char *path = NULL;
-    mt_model *model = NULL;
-    mt_diagnostics messages = {.count = 0};
-    mt_err why = {.code = MT_OK};
-    mt_status rc = mt_find_model(args, result, &file, &path, &why);
-    rc = rc == MT_OK ? mt_model_load(path, &opt, &model, &messages, &why) : rc;
-    rc = rc == MT_OK ? mt_scene_of_result(model, result, 1, scene, &why) : rc;
-    mt_diagnostics_free(&messages);
-    mt_model_delete(model);
-    mt_file_free(&file);
-    free(path);
-    return mt_is_final(rc) || rc == MT_E_SYSTEM ? mt_fail(err, rc, "%s", why.text) : MT_OK;
-}
-
-int mt_cmd_report(const mt_args *args, mt_text *out)
-{
-    const mt_io_options opt = mt_cli_io(args);
-    mt_diagnostics messages = {.count = 0};
-    mt_err err = {.code = MT_OK};
-    mt_result *result = NULL;
-    mt_text scene = {.s = NULL};
-    mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
-    int code = mt_cli_loaded(rc, &messages, &err);
-    if (rc == MT_OK && (args->format == MT_FORMAT_HTML || args->given[MT_OPT_OUTPUT])) {
-        rc = find_scene(args, result, &scene, &err);
-        code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
+    const int n = result->n_recommendations;
+    for (int i = 0; i < n; i++) {
+        if (result->recommendations[i].rank == args->rank) {
+            *out = &result->recommendations[i];
+            return MT_OK;
+        }
     }
-    if (rc == MT_OK) {
-        mt_json_writer w = mt_json_writer_default(out);
-        mt_save_print(args, result, scene.s, &w, out);
-        code = args->format == MT_FORMAT_JSON ? mt_cli_json_done(&w) : MT_EXIT_DONE;
-    }
-    if (rc == MT_OK && args->given[MT_OPT_OUTPUT]) {
-        code = mt_exit_worse(code, mt_save_again(args, args->operands[0], result, scene.s));
-    }
-    mt_text_free(&scene);
-    mt_result_delete(result);
-    return code;
+    return mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d",
+                   args->operands[0], n, n == 1 ? "" : "s", args->rank);
 }
 
 /* modetune explain: what moves each goal of a design, what holds it, and the price. */
@@ -84,7 +47,7 @@ static mt_status choose_explained_design(const mt_args *args, const mt_result *r
         *out = &result->baseline;
         return MT_OK;
     }
-    return mt_cli_recommendation(args, result, out, err);
+    return find_recommendation(args, result, out, err);
 }
 
 static int print(const mt_args *args, const mt_result *result, mt_text *out)
@@ -110,7 +73,7 @@ static int print(const mt_args *args, const mt_result *result, mt_text *out)
     return MT_EXIT_DONE;
 }
 
-int mt_cmd_explain(const mt_args *args, mt_text *out)
+static int run_explain(const mt_args *args, mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
     mt_diagnostics messages = {.count = 0};
@@ -122,6 +85,21 @@ int mt_cmd_explain(const mt_args *args, mt_text *out)
     mt_result_delete(result);
     return code;
 }
+
+const mt_command mt_command_explain = {
+    .name = "explain",
+    .operands = "RESULT.json",
+    .least = 1,
+    .most = 1,
+    .summary = "what moves each goal, what limits the design, at what price",
+    .details =
+        "Prints for each goal of a recommendation the parameters that move it, the "
+        "strongest first: the effect of 1 % more of each, and how far it may still go "
+        "within its bounds. The bounds, bands and limits that hold the design follow, with "
+        "their prices. It needs the result, or its folder, alone and solves nothing. "
+        "--format csv has one row for each goal and parameter.",
+    .run = run_explain,
+};
 
 /*
  * modetune apply: the model's own text with the recommended numbers put in, and those that the
@@ -237,7 +215,7 @@ static mt_status apply_recommendation(const mt_args *args, const mt_result *resu
     const mt_recommendation *chosen = NULL;
     mt_file file = {.bytes = NULL};
     char *model_path = NULL;
-    MT_TRY(mt_cli_recommendation(args, result, &chosen, err));
+    MT_TRY(find_recommendation(args, result, &chosen, err));
     mt_status rc = mt_find_model(args, result, &file, &model_path, err);
     if (rc == MT_OK) {
         rc = substitute(chosen, &result->run, &file, model_path, out, err);
@@ -256,7 +234,7 @@ static mt_status apply_recommendation(const mt_args *args, const mt_result *resu
     return rc;
 }
 
-int mt_cmd_apply(const mt_args *args, mt_text *out)
+static int run_apply(const mt_args *args, mt_text *out)
 {
     const mt_io_options opt = mt_cli_io(args);
     mt_diagnostics messages = {.count = 0};
@@ -271,6 +249,20 @@ int mt_cmd_apply(const mt_args *args, mt_text *out)
     mt_result_delete(result);
     return code;
 }
+
+const mt_command mt_command_apply = {
+    .name = "apply",
+    .operands = "RESULT.json",
+    .least = 1,
+    .most = 1,
+    .summary = "the model with the recommended values",
+    .details =
+        "Prints the model file with the recommended values; the rest of its text stays as it "
+        "is. The model is found from the result, or its folder, and must be the one that was "
+        "solved (same SHA-256) unless --model names it. A result.json whose neighbours were "
+        "changed or belong to another run is refused; a copy by itself is read.",
+    .run = run_apply,
+};
 
 /* modetune diff: what two results say differently. */
 
@@ -471,7 +463,7 @@ static int print_differences(const mt_args *args, const mt_result_diff *diff, mt
     return MT_EXIT_DONE;
 }
 
-int mt_cmd_diff(const mt_args *args, mt_text *out)
+static int run_diff(const mt_args *args, mt_text *out)
 {
     mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
@@ -489,3 +481,22 @@ int mt_cmd_diff(const mt_args *args, mt_text *out)
     mt_result_diff_free(&diff);
     return code;
 }
+
+const mt_command mt_command_diff = {
+    .name = "diff",
+    .operands = "RESULT RESULT",
+    .least = 2,
+    .most = 2,
+    .summary = "differences between two results",
+    .details =
+        "Compares two results (each a result.json or its folder), also of different studies or "
+        "versions of the program: status, designs with their parameters, objectives, "
+        "frequencies, MAC and goals, certificates and all else. It lists what only one of them "
+        "has. How the answers were made (versions, seed, evaluations, digests of the files) is "
+        "listed but does not count as a difference; sentences and measures of rounding are not "
+        "compared.\n"
+        "The text omits what follows from what it shows (errors, derivatives, changes); JSON "
+        "and CSV have everything, with JSON pointers into both files. The exit status is 0 if "
+        "the answers are equal, 1 if they differ, and 2 or more if they cannot be compared.",
+    .run = run_diff,
+};

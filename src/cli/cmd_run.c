@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune run, merge and compare: answer studies, write what was found, judge published
- * values. */
+ * values; and report, which writes a result again. */
 /* realpath is in POSIX.1-2008, but the C library shows it only with X/Open: asked for before
  * any header. */
 #define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
@@ -278,8 +278,10 @@ static void write_output(const mt_result *result, mt_result_file which, mt_text 
     }
 }
 
-void mt_save_print(const mt_args *args, const mt_result *result, const char *scene,
-                   mt_json_writer *w, mt_text *out)
+/* Append the standard output: summary (with published values for --verify), table, page, or, as
+ * a value of w, the result. */
+static void save_print(const mt_args *args, const mt_result *result, const char *scene,
+                       mt_json_writer *w, mt_text *out)
 {
     mt_text json = {.s = NULL};
     switch (args->format) {
@@ -376,8 +378,10 @@ static int save(const mt_args *args, const char *study_path, mt_result *result,
     return code;
 }
 
-int mt_save_again(const mt_args *args, const char *result_path, mt_result *result,
-                  const char *scene)
+/* save for a result that was read; timing.json is kept where the one next to result_path
+ * names the written result. */
+static int save_again(const mt_args *args, const char *result_path, mt_result *result,
+                      const char *scene)
 {
     saving s = {.study_path = result->study.file, .scene = scene};
     if (is_no_file(s.study_path)) {
@@ -964,7 +968,7 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
         mt_text_free(&scene);
         return mt_cli_failed(rc, &j->err);
     }
-    mt_save_print(j->args, j->result, scene.s, w, out);
+    save_print(j->args, j->result, scene.s, w, out);
     const int saved = save(j->args, j->path, j->result, scene.s, j->seconds, j->sha256);
     mt_text_free(&scene);
     j->complete = saved == MT_EXIT_DONE && !is_cut(j->result);
@@ -1065,7 +1069,7 @@ static int for_each_study(round_of *all)
     return code;
 }
 
-int mt_cmd_run(const mt_args *args, mt_text *out)
+static int run_run(const mt_args *args, mt_text *out)
 {
     study_batch batch = {.args = args};
     round_of all = {.args = args,
@@ -1086,14 +1090,46 @@ int mt_cmd_run(const mt_args *args, mt_text *out)
     return code;
 }
 
-int mt_cmd_merge(const mt_args *args, mt_text *out)
+const mt_command mt_command_run = {
+    .name = "run",
+    .operands = "STUDY...",
+    .least = 1,
+    .most = -1,
+    .summary = "solve studies and write the results",
+    .details =
+        "Solves each study, prints a summary and writes the result into DIR/<study file name "
+        "without .json>/: result.json, recommendations.csv, report.html, timing.json, "
+        "trade.csv (of a trade study) and curves.csv (if the study lists responses). A run "
+        "that fails or is killed leaves the old result, or one that the next run repairs.\n"
+        "Several studies are answered one after the other, whatever happens to each. A table "
+        "at the end, and index.json and index.html in DIR, list what became of them.\n"
+        "After an interrupt (Ctrl-C) the best designs so far are written, and run.incomplete "
+        "of the result lists what is missing. --resume continues from the journal that every "
+        "run keeps while it works.",
+    .run = run_run,
+};
+
+static int run_merge(const mt_args *args, mt_text *out)
 {
     mt_args one = *args; /* the first operand is the study */
     one.n_operands = 1;
     one.n_journals = args->n_operands - 1;
     one.journals = args->operands + 1;
-    return mt_cmd_run(&one, out);
+    return run_run(&one, out);
 }
+
+const mt_command mt_command_merge = {
+    .name = "merge",
+    .operands = "STUDY JOURNAL...",
+    .least = 2,
+    .most = -1,
+    .summary = "join the parts of a study's work",
+    .details = "Reads the journals that `run --shard PART/PARTS` left in DIR/<study file name "
+               "without .json>.PART-of-PARTS.journal, does the remaining work, and prints and "
+               "writes what `run` would have printed and written. A journal of another study, "
+               "model, program or library is refused; the work of a damaged line is repeated.",
+    .run = run_merge,
+};
 
 static int compare_one(job *j, mt_json_writer *w, mt_text *out)
 {
@@ -1140,9 +1176,89 @@ static int compare_one(job *j, mt_json_writer *w, mt_text *out)
     return outcome(j, true);
 }
 
-int mt_cmd_compare(const mt_args *args, mt_text *out)
+static int run_compare(const mt_args *args, mt_text *out)
 {
     round_of all = {
         .args = args, .use = compare_one, .w = mt_json_writer_default(out), .out = out};
     return for_each_study(&all);
 }
+
+const mt_command mt_command_compare = {
+    .name = "compare",
+    .operands = "STUDY...",
+    .least = 1,
+    .most = -1,
+    .summary = "published against computed values",
+    .details =
+        "Solves each study and prints its published values beside the computed ones, with "
+        "differences, roles and sources. Writes no files. The exit status is 0 if all "
+        "values hold, and 1 otherwise.",
+    .run = run_compare,
+};
+
+/* modetune report: a result read back and told again, from itself alone; where its model is
+ * found, pages show the mechanism, too. */
+
+/* The scene of the result's designs, where the model that was solved is found. Fails:
+ * MT_E_MEMORY, MT_E_SYSTEM (a candidate cannot be read: the page would differ). */
+static mt_status find_scene(const mt_args *args, const mt_result *result, mt_text *scene,
+                            mt_err *err)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_file file = {.bytes = NULL};
+    char *path = NULL;
+    mt_model *model = NULL;
+    mt_diagnostics messages = {.count = 0};
+    mt_err why = {.code = MT_OK};
+    mt_status rc = mt_find_model(args, result, &file, &path, &why);
+    rc = rc == MT_OK ? mt_model_load(path, &opt, &model, &messages, &why) : rc;
+    rc = rc == MT_OK ? mt_scene_of_result(model, result, 1, scene, &why) : rc;
+    mt_diagnostics_free(&messages);
+    mt_model_delete(model);
+    mt_file_free(&file);
+    free(path);
+    return mt_is_final(rc) || rc == MT_E_SYSTEM ? mt_fail(err, rc, "%s", why.text) : MT_OK;
+}
+
+static int run_report(const mt_args *args, mt_text *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    mt_result *result = NULL;
+    mt_text scene = {.s = NULL};
+    mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
+    if (rc == MT_OK && (args->format == MT_FORMAT_HTML || args->given[MT_OPT_OUTPUT])) {
+        rc = find_scene(args, result, &scene, &err);
+        code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
+    }
+    if (rc == MT_OK) {
+        mt_json_writer w = mt_json_writer_default(out);
+        save_print(args, result, scene.s, &w, out);
+        code = args->format == MT_FORMAT_JSON ? mt_cli_json_done(&w) : MT_EXIT_DONE;
+    }
+    if (rc == MT_OK && args->given[MT_OPT_OUTPUT]) {
+        code = mt_exit_worse(code, save_again(args, args->operands[0], result, scene.s));
+    }
+    mt_text_free(&scene);
+    mt_result_delete(result);
+    return code;
+}
+
+const mt_command mt_command_report = {
+    .name = "report",
+    .operands = "RESULT.json",
+    .least = 1,
+    .most = 1,
+    .summary = "a result as text, CSV or HTML",
+    .details =
+        "Prints the summary that run printed (--format csv: recommendations.csv, html: "
+        "report.html, json: the result) from the result, or its folder, alone. It needs no "
+        "study and solves nothing; only the page's view of the mechanism needs the model, "
+        "and is omitted if apply would not find it. --output writes all files again into "
+        "DIR/<study file name without .json>/, as run does, except timing.json, which is "
+        "copied if it lies beside the result. A result.json whose neighbours were changed "
+        "or belong to another run is refused; a copy by itself is read.",
+    .run = run_report,
+};

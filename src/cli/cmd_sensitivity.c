@@ -470,7 +470,7 @@ static mt_status show_configuration_slopes(const mt_args *args, const mt_loaded_
     return rc;
 }
 
-int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
+static int run_sensitivity(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
@@ -516,3 +516,15 @@ done:
     mt_loaded_model_free(&s);
     return code;
 }
+
+const mt_command mt_command_sensitivity = {
+    .name = "sensitivity",
+    .operands = "MODEL",
+    .least = 1,
+    .most = 1,
+    .summary = "change of each frequency per per cent of each parameter",
+    .details = "Prints exact derivatives of the first natural frequencies (default: 6): the "
+               "change in Hz for 1 % more of a parameter. Repeated modes have directional "
+               "derivatives, given as a set.",
+    .run = run_sensitivity,
+};

@@ -680,7 +680,7 @@ static mt_status write(const mt_args *args, const subject *o, const mt_scene *sc
     return rc;
 }
 
-int mt_cmd_show(const mt_args *args, mt_text *out)
+static int run_show(const mt_args *args, mt_text *out)
 {
     subject o = {.result = NULL};
     mt_scene *scene = NULL;
@@ -707,3 +707,21 @@ done:
     free(o.path);
     return code;
 }
+
+const mt_command mt_command_show = {
+    .name = "show",
+    .operands = "MODEL|RESULT.json",
+    .least = 1,
+    .most = 1,
+    .summary = "the mechanism in three dimensions",
+    .details =
+        "Prints a page that opens in any browser and needs no other file. It shows bodies "
+        "with their ellipsoids of inertia, links, joints with their axes and their "
+        "distance from their bodies, springs, dampers and sensors; the lowest 12 vibration "
+        "modes in motion, with the share of energy of every spring and body; and the range "
+        "of a driven joint. For a result, or its folder, it shows the original design and "
+        "the recommended ones, with the model that apply finds.\n"
+        "--format json prints what the page draws, --svg a still picture. A configuration "
+        "that cannot be analysed is drawn as far as possible, and a message says why.",
+    .run = run_show,
+};

@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "base/run.h"
 #include "cli/cli.h"
+#include "cli/shipped.h"
 #include "cli/vibrated.h"
 #include "environment/vibration.h"
 #include "mechanics/position.h"
@@ -1202,13 +1203,14 @@ static int load_motion_profile(job *j)
     const char *port = NULL;
     mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
-    const mt_status rc = text == NULL ? MT_OK
-                                      : mt_vibrated_load(j->args, sim_profile_of(text, &port),
-                                                         &j->profile, &messages, &err);
+    const mt_status rc = text == NULL
+                             ? MT_OK
+                             : mt_shipped_load_profile(j->args, sim_profile_of(text, &port),
+                                                       &j->profile, &messages, &err);
     return mt_cli_loaded(rc, &messages, &err);
 }
 
-int mt_cmd_simulate(const mt_args *args, mt_text *out)
+static int run_simulate(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     job j = {.args = args, .s = &s};
@@ -1241,3 +1243,29 @@ done:
     mt_loaded_model_free(&s);
     return code;
 }
+
+const mt_command mt_command_simulate = {
+    .name = "simulate",
+    .operands = "MODEL",
+    .least = 1,
+    .most = 1,
+    .summary = "motion in time, of any amplitude",
+    .details =
+        "Integrates the nonlinear equations of motion of one configuration, and so checks "
+        "what the other commands compute for small motions. Where bodies only slide along "
+        "fixed lines and turn about fixed axes, and all forces grow in proportion, the "
+        "equations are linear: then the motion is exact, by the matrix exponential, and the "
+        "last lines say so. The motion begins at rest in "
+        "equilibrium unless --start, --rate or --mode say otherwise; --input, --sine, "
+        "--sweep, --random and --vibration excite it. Prints the outputs over time and "
+        "what they show: for a free motion its turns and its tones (frequency, damping, "
+        "amplitude), under a sine the steady amplitudes and phases, the balance of energy, "
+        "and the largest drift of a joint in a step before it was corrected.\n"
+        "Springs, viscous dampers, loads and masses are those of the model; bars and beams "
+        "of consistent mass move their mass with their frame. Where springs are so stiff that "
+        "their vibrations are far faster than the motion, steps solve these beforehand.\n"
+        "After an interrupt (Ctrl-C), or at the end of --time, the motion so far is "
+        "printed, and the exit status is 130 or 1. The exit status is 3 if the motion "
+        "reaches a dead centre, or if an input acts in a direction without mass.",
+    .run = run_simulate,
+};

@@ -612,7 +612,7 @@ static int show_configuration_sweep(sink *to, const mt_loaded_model *s, int c,
     return rc == MT_OK ? code : mt_exit_worse(code, mt_cli_failed(rc, &err));
 }
 
-int mt_cmd_sweep(const mt_args *args, mt_text *out)
+static int run_sweep(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     sink to = {.args = args, .out = out, .w = mt_json_writer_default(out)};
@@ -651,3 +651,18 @@ done:
     mt_loaded_model_free(&s);
     return code;
 }
+
+const mt_command mt_command_sweep = {
+    .name = "sweep",
+    .operands = "MODEL",
+    .least = 1,
+    .most = 1,
+    .summary = "positions and frequencies over a range of motion",
+    .details =
+        "Drives a joint through a range (--drive) and prints at each position the "
+        "coordinate of every joint, its ratio to the driven one (an exact derivative), "
+        "what holds the joint, and with --modes the natural frequencies by index (default: "
+        "6). If a limit position ends the range, the positions before it are printed, a "
+        "message names the limit, and the exit status is 3.",
+    .run = run_sweep,
+};

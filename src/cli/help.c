@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune help and --manual: what the documents say. */
-#include "cli/help.h"
-
+/* What the program says of itself: --help, the command help, which reads the documents, manual
+ * pages and completion in shells. */
 #include "modetune/version.h"
 
 #include <ctype.h>
@@ -13,6 +12,7 @@
 #include "cli/args.h"
 #include "cli/cli.h"
 #include "cli/documents_data.h"
+#include "cli/shipped.h"
 #include "io/shipped.h"
 
 /* The document of the commands. */
@@ -26,6 +26,99 @@ typedef struct passage {
     const char *body;  /* after the heading's line; NULL for an item or a row */
     const char *end;   /* after its last line */
 } passage;
+
+/* --help, from the tables. */
+
+enum { OPTION_COLUMN = 31, EXIT_COLUMN = 7, LINE_WIDTH = 92, FORM_TEXT = 64 };
+
+static void spaces(int n, mt_text *out)
+{
+    for (int i = 0; i < n; i++) {
+        mt_text_add(out, " ");
+    }
+}
+
+/* Append paragraphs of words (one per line of s) in lines of up to 92 columns that begin at
+ * `column`; the caller has already written up to there for the first line. */
+static void fill_lines(const char *s, int column, mt_text *out)
+{
+    int at = column;
+    for (const char *word = s; *word != '\0'; word += strspn(word, " \n")) {
+        const int length = (int)strcspn(word, " \n");
+        const bool paragraph = word > s && word[-1] == '\n';
+        if (paragraph || (at > column && at + 1 + length > LINE_WIDTH)) {
+            mt_text_add(out, "\n");
+            spaces(column, out);
+            at = column;
+        } else if (at > column) {
+            mt_text_add(out, " ");
+            at++;
+        }
+        mt_text_add_n(out, word, (size_t)length);
+        at += length;
+        word += length;
+    }
+    mt_text_add(out, "\n");
+}
+
+static void help_option(const mt_option *o, mt_text *out)
+{
+    char form[FORM_TEXT];
+    const int n =
+        mt_snprintf(form, sizeof form, "  %c%c%s--%s%s%s", o->letter == '\0' ? ' ' : '-',
+                    o->letter == '\0' ? ' ' : o->letter, o->letter == '\0' ? "  " : ", ",
+                    o->name, o->value == NULL ? "" : " ", o->value == NULL ? "" : o->value);
+    mt_text_add(out, form);
+    if (n + 2 > OPTION_COLUMN) {
+        mt_text_add(out, "\n");
+        spaces(OPTION_COLUMN, out);
+    } else {
+        spaces(OPTION_COLUMN - n, out);
+    }
+    fill_lines(o->help, OPTION_COLUMN, out);
+}
+
+static void help_command(const mt_command *const *commands, int command, mt_text *out)
+{
+    const mt_command *const c = commands[command];
+    mt_text_addf(out, "Usage: modetune %s %s [options]\n\n", c->name, c->operands);
+    fill_lines(c->details, 0, out);
+    mt_text_add(out, "\nOptions:\n");
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_option_is_of(i, command)) {
+            help_option(&mt_options[i], out);
+        }
+    }
+}
+
+/* Append the text of --help: of the program (MT_CMD_NONE) or of one command. */
+static void print_help(const mt_command *const *commands, int command, mt_text *out)
+{
+    if (command != MT_CMD_NONE) {
+        help_command(commands, command, out);
+        return;
+    }
+    mt_text_add(
+        out, "Usage: modetune COMMAND ...\n\n"
+             "Tells what to change so that the natural frequencies of a mechanism land where "
+             "they must.\n\nCommands:\n");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "  %-12s %s\n", commands[i]->name, commands[i]->summary);
+    }
+    mt_text_add(out, "\nOptions of every command:\n");
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_options[i].commands == MT_ALL_COMMANDS || mt_options[i].commands == 0U) {
+            help_option(&mt_options[i], out);
+        }
+    }
+    mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command, \"modetune help "
+                     "TOPIC\" a command or a "
+                     "word of a\nmodel, a study or a result.\n\nExit status:\n");
+    for (int i = 0; i < MT_EXITS; i++) {
+        mt_text_addf(out, "  %-4d ", mt_exits[i].code);
+        fill_lines(mt_exits[i].meaning, EXIT_COLUMN, out);
+    }
+}
 
 /* What the documents say of a command, or of a member of a file. */
 
@@ -406,10 +499,10 @@ static void add_names(rank of, bool items, mt_text *names)
 }
 
 /* The same of the commands, where no name is there yet. */
-static void add_commands(mt_text *names)
+static void add_commands(const mt_command *const *commands, mt_text *names)
 {
     for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(names, "%s%s,", i == 0 ? "," : "", mt_commands[i].name);
+        mt_text_addf(names, "%s%s,", i == 0 ? "," : "", commands[i]->name);
     }
 }
 
@@ -424,20 +517,20 @@ static void list_names(const char *what, const mt_text *names, mt_text *out)
     }
     if (line.s != NULL && !line.failed) {
         mt_text_addf(out, "\n%s:\n  ", what);
-        mt_help_fill(line.s, 2, out);
+        fill_lines(line.s, 2, out);
     }
     out->failed = out->failed || line.failed || names->failed;
     mt_text_free(&line);
 }
 
-static void list_topics(mt_text *out)
+static void list_topics(const mt_command *const *commands, mt_text *out)
 {
     static const char *const what[RANKS] = {"Commands", "Topics",
                                             "Objects of files (and each of their members)"};
     for (rank r = OF_COMMANDS; r < RANKS; r++) {
         mt_text names = {.s = NULL};
         if (r == OF_COMMANDS) {
-            add_commands(&names);
+            add_commands(commands, &names);
         } else {
             add_names(r, false, &names);
         }
@@ -447,13 +540,13 @@ static void list_topics(mt_text *out)
 }
 
 /* Add names that the topic may mean: near ones, then those that contain it. */
-static void add_near(const char *topic, mt_text *out)
+static void add_near(const mt_command *const *commands, const char *topic, mt_text *out)
 {
     enum { MOST = 5, LONG_ENOUGH = 3 };
     mt_text names = {.s = NULL};
     int n = 0;
     const int length = (int)strlen(topic);
-    add_commands(&names);
+    add_commands(commands, &names);
     for (rank r = OF_COMMANDS; r < RANKS; r++) {
         add_names(r, false, &names);
         add_names(r, true, &names);
@@ -477,12 +570,12 @@ static void add_near(const char *topic, mt_text *out)
     mt_text_free(&names);
 }
 
-static int report_unknown_topic(const char *topic)
+static int report_unknown_topic(const mt_command *const *commands, const char *topic)
 {
     mt_text near = {.s = NULL};
     mt_text topics = {.s = NULL};
-    add_near(topic, &near);
-    list_topics(&topics);
+    add_near(commands, topic, &near);
+    list_topics(commands, &topics);
     if (near.failed || topics.failed) {
         mt_err err = {.code = MT_OK};
         mt_text_free(&near);
@@ -497,26 +590,27 @@ static int report_unknown_topic(const char *topic)
     return MT_EXIT_INPUT;
 }
 
-int mt_cmd_help(const mt_args *args, mt_text *out)
+static int show_topic(const mt_args *args, mt_text *out)
 {
     const mt_shipped *last = NULL;
     if (args->n_operands == 0) {
-        mt_help(MT_CMD_NONE, out);
-        list_topics(out);
+        print_help(args->commands, MT_CMD_NONE, out);
+        list_topics(args->commands, out);
         return MT_EXIT_DONE;
     }
     const char *const topic = args->operands[0];
     show_all(topic, BY_HEADINGS, &last, out);
-    const int command = mt_command_named(topic);
+    const int command = mt_command_named(args->commands, topic);
     if (last == NULL && command != MT_CMD_NONE) {
-        mt_help(command, out);
+        print_help(args->commands, command, out);
         return MT_EXIT_DONE;
     }
     for (way by = BY_ITEMS; by < WAYS && last == NULL; by++) {
         show_all(topic, by, &last, out);
     }
     mt_text_add(out, last == NULL ? "" : "\n");
-    return last == NULL && !out->failed ? report_unknown_topic(topic) : MT_EXIT_DONE;
+    return last == NULL && !out->failed ? report_unknown_topic(args->commands, topic)
+                                        : MT_EXIT_DONE;
 }
 
 /* The manual pages. */
@@ -836,9 +930,9 @@ static const char *earlier(const char *a, const char *b)
     return a < b ? a : b;
 }
 
-static void manual_of(int command, mt_text *out)
+static void manual_of(const mt_command *const *commands, int command, mt_text *out)
 {
-    const mt_command *const c = &mt_commands[command];
+    const mt_command *const c = commands[command];
     const mt_shipped *const page = documents_find(DOCUMENT_COMMANDS);
     passage p = {.begin = NULL};
     bool found = next_section(page, &p);
@@ -892,10 +986,12 @@ static void add_common(mt_text *out)
     }
 }
 
-void mt_manual(int command, mt_text *out)
+/* A manual page, section 1, in the language of man(7): modetune(1) with MT_CMD_NONE, or
+ * modetune-COMMAND(1). */
+static void print_manual(const mt_command *const *commands, int command, mt_text *out)
 {
     if (command != MT_CMD_NONE) {
-        manual_of(command, out);
+        manual_of(commands, command, out);
         return;
     }
     head("", "what to change so that natural frequencies land where they must", out);
@@ -905,8 +1001,8 @@ void mt_manual(int command, mt_text *out)
     mt_text_add(out, "\n");
     section("COMMANDS", out);
     for (int i = 0; i < MT_CMD_IDS; i++) {
-        man_tag(mt_commands[i].name, mt_commands[i].operands, out);
-        man_help(mt_commands[i].summary, true, out);
+        man_tag(commands[i]->name, commands[i]->operands, out);
+        man_help(commands[i]->summary, true, out);
     }
     section("OPTIONS", out);
     for (int i = 0; i < MT_OPT_IDS; i++) {
@@ -920,7 +1016,273 @@ void mt_manual(int command, mt_text *out)
     man_help("No colour on a terminal.", true, out);
     section("SEE ALSO", out);
     for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(out, "\\fBmodetune\\-%s\\fR(1)%s\n", mt_commands[i].name,
+        mt_text_addf(out, "\\fBmodetune\\-%s\\fR(1)%s\n", commands[i]->name,
                      i + 1 < MT_CMD_IDS ? "," : "");
     }
 }
+
+/*
+ * Scripts for the shells, from the tables behind --help. What the value of an option may be is
+ * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL and PROFILE a
+ * file; of another value nothing is known.
+ */
+
+static const char separators[] = "|";
+
+static bool is_choice(const mt_option *o)
+{
+    return o->value != NULL && strchr(o->value, '|') != NULL;
+}
+
+static bool is_called(const mt_option *o, const char *value)
+{
+    return o->value != NULL && strcmp(o->value, value) == 0;
+}
+
+static bool is_file(const mt_option *o)
+{
+    return is_called(o, "MODEL") || is_called(o, "PROFILE");
+}
+
+/* The words of "a|b|c", a blank between them. */
+static void add_choice(const char *value, mt_text *out)
+{
+    for (const char *at = value; *at != '\0'; at++) {
+        mt_text_add_n(out, strchr(separators, *at) != NULL ? " " : at, 1);
+    }
+}
+
+/* -o --output, for a pattern of `case`. */
+static void add_pattern(const mt_option *o, mt_text *out)
+{
+    if (o->letter != '\0') {
+        mt_text_addf(out, "-%c|", o->letter);
+    }
+    mt_text_addf(out, "--%s", o->name);
+}
+
+static void bash_options(int command, mt_text *out)
+{
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_option_is_of(i, command)) {
+            mt_text_addf(out, " --%s", mt_options[i].name);
+        }
+    }
+}
+
+/* What the program has of the command's operands by name; NULL: they are files. */
+static const mt_shipped_kind *shipped_of(int command)
+{
+    return command == MT_CMD_EXAMPLES ? &mt_shipped_examples
+           : command == MT_CMD_SCHEMA ? &mt_shipped_schemas
+                                      : NULL;
+}
+
+/* The words of --format, a blank between them. */
+static void add_formats(int command, mt_text *out)
+{
+    const char *between = "";
+    for (int i = 0; i < MT_FORMATS; i++) {
+        const char *const name = mt_format_of(i, command);
+        if (name != NULL) {
+            mt_text_addf(out, "%s%s", between, name);
+            between = " ";
+        }
+    }
+}
+
+/* What stands behind an option that takes a value. */
+static void bash_values(mt_text *out)
+{
+    mt_text_add(out, "    case $previous in\n");
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        const mt_option *const o = &mt_options[i];
+        if (o->value == NULL) {
+            continue;
+        }
+        mt_text_add(out, "    ");
+        add_pattern(o, out);
+        if (i == MT_OPT_FORMAT) {
+            mt_text_add(out, ") COMPREPLY=($(compgen -W \"$formats\" -- \"$current\")); "
+                             "return ;;\n");
+        } else if (is_choice(o)) {
+            mt_text_add(out, ") COMPREPLY=($(compgen -W '");
+            add_choice(o->value, out);
+            mt_text_add(out, "' -- \"$current\")); return ;;\n");
+        } else if (is_called(o, "DIR")) {
+            mt_text_add(out, ") COMPREPLY=($(compgen -d -- \"$current\")); return ;;\n");
+        } else if (is_file(o)) {
+            mt_text_add(out, ") ;;\n");
+        } else {
+            mt_text_add(out, ") return ;;\n");
+        }
+    }
+    mt_text_add(out, "    esac\n");
+}
+
+static void bash(const mt_command *const *commands, mt_text *out)
+{
+    mt_text_add(out,
+                "# modetune(1) in bash: commands, options, values, JSON files\n"
+                "_modetune() {\n"
+                "    local current=${COMP_WORDS[COMP_CWORD]} "
+                "previous=${COMP_WORDS[COMP_CWORD-1]} command= words= formats= names= word\n"
+                "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
+                "        case $word in\n        ");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "%s%s", i == 0 ? "" : "|", commands[i]->name);
+    }
+    mt_text_add(out, ") command=$word; break ;;\n        esac\n    done\n    COMPREPLY=()\n");
+    mt_text_add(out, "    case $command in\n    '') words='");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "%s%s", i == 0 ? "" : " ", commands[i]->name);
+    }
+    bash_options(MT_CMD_NONE, out);
+    mt_text_add(out, "' ;;\n");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "    %s) words='", commands[i]->name);
+        bash_options(i, out);
+        mt_text_add(out, "' formats='");
+        add_formats(i, out);
+        if (shipped_of(i) != NULL) {
+            mt_text_add(out, "' names='");
+            mt_shipped_names(shipped_of(i), out);
+        }
+        mt_text_add(out, "' ;;\n");
+    }
+    mt_text_add(out, "    esac\n");
+    bash_values(out);
+    mt_text_add(out, "    if [[ -z $command || $current == -* ]]; then\n"
+                     "        COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
+                     "    elif [[ -n $names ]]; then\n"
+                     "        COMPREPLY=($(compgen -W \"$names\" -- \"$current\"))\n"
+                     "    else\n"
+                     "        COMPREPLY=($(compgen -f -X '!*.json' -- \"$current\") "
+                     "$(compgen -d -- \"$current\"))\n"
+                     "    fi\n"
+                     "}\n"
+                     "complete -o filenames -F _modetune modetune\n");
+}
+
+/* The first clause of a text between apostrophes, without what zsh would obey there. */
+static void zsh_text(const char *text, mt_text *out)
+{
+    const char *const sentence = strstr(text, ". ");
+    const char *const clause = text + strcspn(text, ";:(");
+    const char *const end = sentence == NULL || clause < sentence ? clause : sentence;
+    for (const char *at = text; at < end; at++) {
+        if (*at == '\'') {
+            mt_text_add(out, "'\\''");
+        } else if (strchr("[]\\", *at) == NULL && !(at + 1 == end && *at == ' ')) {
+            mt_text_add_n(out, at, 1);
+        }
+    }
+}
+
+static void zsh_option(const mt_option *o, int command, mt_text *out)
+{
+    mt_text_addf(out, " \\\n            '%s--%s%s[", o->repeats ? "*" : "", o->name,
+                 o->value == NULL ? "" : "=");
+    zsh_text(o->help, out);
+    mt_text_add(out, "]");
+    if (is_choice(o)) {
+        mt_text_addf(out, ":%s:(", o->name);
+        if (o == &mt_options[MT_OPT_FORMAT]) {
+            add_formats(command, out);
+        } else {
+            add_choice(o->value, out);
+        }
+        mt_text_add(out, ")");
+    } else if (o->value != NULL) {
+        const char *const how = is_called(o, "DIR") ? "_files -/"
+                                : is_file(o)        ? "_files -g \"*.json\""
+                                                    : "";
+        mt_text_addf(out, ":%s:%s", o->name, how);
+    }
+    mt_text_add(out, "'");
+}
+
+static void zsh_options(int command, mt_text *out)
+{
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_option_is_of(i, command)) {
+            zsh_option(&mt_options[i], command, out);
+        }
+    }
+}
+
+static void zsh(const mt_command *const *commands, mt_text *out)
+{
+    mt_text_add(out, "#compdef modetune\n"
+                     "# modetune(1) in zsh: commands, options, values, JSON files\n"
+                     "_modetune() {\n"
+                     "    local curcontext=$curcontext state line\n"
+                     "    local -a commands=(\n");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "        '%s:", commands[i]->name);
+        zsh_text(commands[i]->summary, out);
+        mt_text_add(out, "'\n");
+    }
+    mt_text_add(out, "    )\n    _arguments -C");
+    zsh_options(MT_CMD_NONE, out);
+    mt_text_add(out, " \\\n            '1:command:->command' '*::argument:->argument'\n"
+                     "    case $state in\n"
+                     "    command) _describe command commands ;;\n"
+                     "    argument)\n        case $line[1] in\n");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "        %s) _arguments", commands[i]->name);
+        zsh_options(i, out);
+        if (shipped_of(i) != NULL) {
+            mt_text_addf(out, " \\\n            '*:%s:(", shipped_of(i)->what);
+            mt_shipped_names(shipped_of(i), out);
+            mt_text_add(out, ")' ;;\n");
+        } else {
+            mt_text_add(out, " \\\n            '*:file:_files -g \"*.json\"' ;;\n");
+        }
+    }
+    mt_text_add(out, "        esac ;;\n    esac\n}\n_modetune \"$@\"\n");
+}
+
+/* A script for this shell that completes commands, options, their values and files, from the
+ * tables of --help. */
+static void print_completion(const mt_command *const *commands, mt_shell shell, mt_text *out)
+{
+    if (shell == MT_SHELL_BASH) {
+        bash(commands, out);
+    } else {
+        zsh(commands, out);
+    }
+}
+
+/* The command help, and the options of every command that ask what the program is. */
+
+static int run_help(const mt_args *args, mt_text *out)
+{
+    if (args->given[MT_OPT_VERSION]) {
+        mt_text_addf(out, "modetune %s (commit %s, compiled by %s)\n", mt_version(),
+                     mt_build_commit(), mt_build_compiler());
+    } else if (args->given[MT_OPT_MANUAL]) {
+        print_manual(args->commands, args->command, out);
+    } else if (args->given[MT_OPT_COMPLETION]) {
+        print_completion(args->commands, args->shell, out);
+    } else if (args->given[MT_OPT_HELP]) {
+        print_help(args->commands, args->command, out);
+    } else {
+        return show_topic(args, out);
+    }
+    return MT_EXIT_DONE;
+}
+
+const mt_command mt_command_help = {
+    .name = "help",
+    .operands = "[TOPIC]",
+    .least = 0,
+    .most = 1,
+    .summary = "what the documents say of a command or a word",
+    .details =
+        "Prints the sections of the documents about a topic: a command, or a member of a "
+        "model, a study or a result (avoid, bushing, margin_percent). Explanations come "
+        "first, then the reference of the file formats. Without a topic: lists all "
+        "commands and topics.",
+    .run = run_help,
+};

@@ -11,6 +11,7 @@
 #include "model/lint.h"
 #include "model/setting.h"
 #include "model/values.h"
+#include "result/model.h"
 
 static mt_status refuse_unknown_name(const char *what, const char *name,
                                      const char *const *names, int n, mt_err *err)
@@ -300,4 +301,77 @@ const char *mt_cli_method(mt_lowest_method way)
     static const char *const names[] = {
         [MT_LOWEST_NONE] = "dense", [MT_LOWEST_TREE] = "tree", [MT_LOWEST_SPARSE] = "sparse"};
     return names[way];
+}
+
+/* What answers about configurations share. */
+
+void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", configuration);
+    mt_json_put_string(w, "error", err->text);
+    mt_json_close(w);
+}
+
+void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
+{
+    for (int i = 0; i < list->n; i++) {
+        const mt_warning *const d = &list->items[i];
+        mt_text_addf(out, "  %s: %s\n", d->level == MT_LEVEL_WARNING ? "doubtful" : "note",
+                     d->text);
+    }
+}
+
+void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints)
+{
+    mt_json_open_flat(w, member, '[');
+    for (int i = 0; i < joints->n; i++) {
+        mt_json_put_string(w, NULL, joints->name[i]);
+    }
+    mt_json_close(w);
+}
+
+void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness)
+{
+    if (!nearness->near) {
+        mt_json_put_null(w, "dead_centre");
+        return;
+    }
+    mt_json_open(w, "dead_centre", '{');
+    mt_json_put_number(w, "distance", nearness->distance);
+    mt_json_put_number(w, "independence", nearness->independence);
+    mt_cli_json_joints(w, "joints", &nearness->joints);
+    mt_json_close(w);
+}
+
+mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err)
+{
+    mt_json_open(w, "redundant_constraints", '[');
+    for (int k = 0; k < mt_linear_redundant(lin); k++) {
+        mt_joint_names joints;
+        MT_TRY(mt_linear_redundant_set(lin, k, mem, &joints, err));
+        mt_cli_json_joints(w, NULL, &joints);
+    }
+    mt_json_close(w);
+    return MT_OK;
+}
+
+/* --model takes a file as it is, with a warning where it is not what was solved; without it the
+ * model is looked for (result/model.h). */
+
+mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
+                        char **path, mt_err *err)
+{
+    const char *const given = args->value[MT_OPT_MODEL];
+    const char *const root = args->value[MT_OPT_ROOT];
+    if (given == NULL) {
+        return mt_result_find_model(args->operands[0], result, root, file, path, err);
+    }
+    MT_TRY(mt_file_read(given, root, MT_JSON_MAX_BYTES, file, err));
+    const char *const hash = mt_result_model_sha256(result);
+    if (hash == NULL || strcmp(hash, file->sha256) != 0) {
+        mt_terminal_warning("%s is not what was solved: it has changed since", given);
+    }
+    *path = mt_file_join("x", given);
+    return *path == NULL ? mt_fail_memory(err) : MT_OK;
 }

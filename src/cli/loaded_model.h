@@ -6,7 +6,12 @@
 #include "analysis/lowest.h"
 #include "base/text.h"
 #include "cli/args.h"
+#include "io/file.h"
+#include "io/write_json.h"
+#include "mechanics/linear.h"
+#include "mechanics/singular.h"
 #include "model/model.h"
+#include "result/result.h"
 
 /* A model with the parameters of --set, and the configurations to analyse. */
 typedef struct mt_loaded_model {
@@ -79,5 +84,23 @@ const char *mt_loaded_model_configuration(const mt_loaded_model *s, int c);
 /* The model's name of vibration mode `index` of configuration c; NULL: none. Valid at the
  * original design only. */
 const char *mt_mode_name(const mt_loaded_model *s, int c, int index);
+
+/* A configuration without an answer in a list of answers, with the reason. */
+void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err);
+/* Warnings and notes of a configuration, one line each, before its table. */
+void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out);
+/* mt_cli_json_joints: names of joints as a list; mt_cli_json_redundant: member
+ * "redundant_constraints", a list of such lists. */
+void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints);
+mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err);
+/* Member "dead_centre" of an open object: null, or the distance to one and the joints whose
+ * equations become dependent there. */
+void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);
+
+/* The model of a result, the first operand: the file of --model, else a file found that holds
+ * exactly the bytes that were solved. file: mt_file_free; path: heap. Fails: MT_E_INPUT (not
+ * found), MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
+                        char **path, mt_err *err);
 
 #endif

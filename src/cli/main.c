@@ -41,7 +41,6 @@ __attribute__((section(".preinit_array"), used)) static const before_constructor
 int main(int argc, char *argv[])
 {
     mt_terminal_open();
-    mt_terminal_ignore_signals();
     mt_blas_set_threads(1);
     (void)gsl_set_error_handler_off(); /* it would abort where memory is out */
     const int code = mt_cli_main(argc, argv);

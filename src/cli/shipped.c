@@ -13,11 +13,7 @@
 
 enum { SHIPPED_NAME = 64, SHIPPED_MOST = 100 };
 
-/**
- * Write n files of the distribution into a folder, which is made, under the given names. Where
- * an existing file holds other bytes, none is written. Fails: MT_E_INPUT (naming the first such
- * file), MT_E_SYSTEM, MT_E_MEMORY.
- */
+/* A file of the distribution, and under which name it is written. */
 typedef struct shipped_copy {
     const mt_shipped *file;
     const char *name; /* "schemas/model.schema.json" */
@@ -137,8 +133,10 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
     return code;
 }
 
-mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
-                           const mt_shipped **out, mt_err *err)
+/* The file of that name. Fails: MT_E_USAGE, with the nearest name or the command that lists
+ * all. */
+static mt_status shipped_named(const mt_shipped_kind *kind, const char *name,
+                               const mt_shipped **out, mt_err *err)
 {
     const char *known[SHIPPED_MOST];
     char text[SHIPPED_MOST][SHIPPED_NAME];
@@ -162,6 +160,22 @@ mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
                          kind->what, name, kind->command)
                : mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"; did you mean \"%s\"?",
                          kind->what, name, near);
+}
+
+mt_status mt_shipped_load_profile(const mt_args *args, const char *name, mt_vibration **out,
+                                  mt_diagnostics *messages, mt_err *err)
+{
+    mt_io_options opt = mt_cli_io(args);
+    const mt_shipped *own = NULL;
+    if (strpbrk(name, "/.") != NULL || !mt_file_absent(name)) {
+        return mt_vibration_load(name, &opt, out, messages, err);
+    }
+    MT_TRY(shipped_named(&mt_shipped_profiles, name, &own, err));
+    const mt_shipped *const aircraft = mt_shipped_find("problems/aircraft.json");
+    const mt_file_text texts[] = {{.path = own->path, .text = own->bytes},
+                                  {.path = aircraft->path, .text = aircraft->bytes}};
+    opt.files = (mt_files){.given = texts, .n = MT_COUNT(texts), .only = true};
+    return mt_vibration_load(own->path, &opt, out, messages, err);
 }
 
 /* Fails where another file is at the path; *same: true where it has the same bytes. */
@@ -201,6 +215,11 @@ static mt_status write_one(const char *folder, const shipped_copy *copy, mt_err 
     return rc;
 }
 
+/**
+ * Write n files of the distribution into a folder, which is made, under the given names. Where
+ * an existing file holds other bytes, none is written. Fails: MT_E_INPUT (naming the first such
+ * file), MT_E_SYSTEM, MT_E_MEMORY.
+ */
 static mt_status shipped_write(const char *folder, const shipped_copy *copies, int n,
                                mt_err *err)
 {
@@ -254,7 +273,7 @@ static int add_named(shipped_copy *copies, int n)
     return n;
 }
 
-int mt_cmd_examples(const mt_args *args, mt_text *out)
+static int run_examples(const mt_args *args, mt_text *out)
 {
     shipped_copy copies[SHIPPED_MOST] = {{NULL, NULL}};
     mt_err err = {.code = MT_OK};
@@ -265,7 +284,7 @@ int mt_cmd_examples(const mt_args *args, mt_text *out)
     mt_status rc = MT_OK;
     for (int i = 0; i < args->n_operands && i < SHIPPED_MOST && rc == MT_OK; i++) {
         const mt_shipped *file = NULL;
-        rc = mt_shipped_named(&mt_shipped_examples, args->operands[i], &file, &err);
+        rc = shipped_named(&mt_shipped_examples, args->operands[i], &file, &err);
         if (rc == MT_OK) {
             copies[n++] = (shipped_copy){file, file->path};
         }
@@ -283,6 +302,19 @@ int mt_cmd_examples(const mt_args *args, mt_text *out)
     return MT_EXIT_DONE;
 }
 
+const mt_command mt_command_examples = {
+    .name = "examples",
+    .operands = "[NAME...]",
+    .least = 0,
+    .most = -1,
+    .summary = "the studies that are part of the program",
+    .details =
+        "Lists the studies. With names: writes these studies into DIR/studies, and the "
+        "models, references and schemas that they name beside it, and prints the paths. If "
+        "one of the files exists with other contents, nothing is written.",
+    .run = run_examples,
+};
+
 /* modetune init: a model and a study to begin with, and the schemas that editors complete them
  * by. */
 
@@ -296,7 +328,7 @@ static const mt_shipped *find_file(const char *kind, const char *name)
     return mt_shipped_find(path);
 }
 
-int mt_cmd_init(const mt_args *args, mt_text *out)
+static int run_init(const mt_args *args, mt_text *out)
 {
     const char *const folder = args->n_operands > 0 ? args->operands[0] : ".";
     const char *const kind = args->value[MT_OPT_KIND];
@@ -330,19 +362,46 @@ int mt_cmd_init(const mt_args *args, mt_text *out)
     return MT_EXIT_DONE;
 }
 
+const mt_command mt_command_init = {
+    .name = "init",
+    .operands = "[DIR]",
+    .least = 0,
+    .most = 1,
+    .summary = "a model and a study to begin with",
+    .details =
+        "Writes model.json, study.json and their schemas, which let an editor complete "
+        "them, into the folder (default: the current one), creates it if necessary, and "
+        "prints the paths. Each part of the model has a description; the study asks a "
+        "question that it answers within seconds. --kind chooses among models. If one of "
+        "the files exists with other "
+        "contents, nothing is written.",
+    .run = run_init,
+};
+
 /* modetune schema: the JSON Schemas, which editors complete and check files by. */
 
-int mt_cmd_schema(const mt_args *args, mt_text *out)
+static int run_schema(const mt_args *args, mt_text *out)
 {
     mt_err err = {.code = MT_OK};
     const mt_shipped *file = NULL;
     if (args->n_operands == 0) {
         return mt_shipped_list(args, &mt_shipped_schemas, out);
     }
-    const mt_status rc = mt_shipped_named(&mt_shipped_schemas, args->operands[0], &file, &err);
+    const mt_status rc = shipped_named(&mt_shipped_schemas, args->operands[0], &file, &err);
     if (rc != MT_OK || file == NULL) {
         return mt_cli_failed(rc, &err);
     }
     mt_text_add_n(out, file->bytes, file->size);
     return MT_EXIT_DONE;
 }
+
+const mt_command mt_command_schema = {
+    .name = "schema",
+    .operands = "[NAME]",
+    .least = 0,
+    .most = 1,
+    .summary = "the JSON Schemas of all files",
+    .details =
+        "Lists the schemas. With a name (model, study, result, ...): prints that schema.",
+    .run = run_schema,
+};

@@ -4,6 +4,7 @@
 
 #include "cli/args.h"
 #include "io/shipped.h"
+#include "vibration/profile_response.h"
 
 /* A kind of shipped files: those in one folder with one ending; the name is between these. */
 typedef struct mt_shipped_kind {
@@ -24,9 +25,10 @@ void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out);
 /* List the files, with the first sentence of their descriptions, in the requested format: as
  * JSON a list of objects of texts. Returns the exit status. */
 int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out);
-/* The file of that name. Fails: MT_E_USAGE, with the nearest name or the command that lists
- * all. */
-mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
-                           const mt_shipped **out, mt_err *err);
+
+/* Load the profile in the file of that name, or, where there is none, the profile of that name
+ * built into the program, with its catalogue. Fails and messages as mt_vibration_load. */
+mt_status mt_shipped_load_profile(const mt_args *args, const char *name, mt_vibration **out,
+                                  mt_diagnostics *messages, mt_err *err);
 
 #endif

@@ -21,6 +21,7 @@
 #include "base/run.h"
 #include "base/text.h"
 #include "cli/cli.h"
+#include "report/table.h"
 #include "result/write.h"
 
 /* The only place that prints, looks at the environment, the clock or signals. */
@@ -155,7 +156,9 @@ static int output_failed(void)
     return MT_EXIT_SYSTEM;
 }
 
-void mt_terminal_drop(void)
+/* Mark the collected text as incomplete for lack of memory: the next mt_terminal_put discards
+ * it. */
+static void drop_output(void)
 {
     dropped = true;
 }
@@ -184,6 +187,16 @@ int mt_terminal_close(void)
                                                                          : output_failed();
 }
 
+/* Turn SIGPIPE and SIGXFSZ into write errors. */
+static void ignore_signals(void)
+{
+    struct sigaction ignore;
+    memset(&ignore, 0, sizeof ignore);
+    ignore.sa_handler = SIG_IGN;
+    (void)sigaction(SIGPIPE, &ignore, NULL);
+    (void)sigaction(SIGXFSZ, &ignore, NULL);
+}
+
 void mt_terminal_open(void)
 {
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++) {
@@ -191,6 +204,7 @@ void mt_terminal_open(void)
             (void)open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
         }
     }
+    ignore_signals();
 }
 
 /* One line of talk to standard error. */
@@ -257,7 +271,9 @@ static void diagnostic(const char *text, size_t length)
     (void)fputc('\n', stderr);
 }
 
-void mt_terminal_diagnostics(const char *lines)
+/* Write lines of diagnostics to standard error; "error:" and "warning:" are coloured on a
+ * terminal. */
+static void print_diagnostics(const char *lines)
 {
     while (*lines != '\0') {
         const size_t length = strcspn(lines, "\n");
@@ -274,6 +290,56 @@ void mt_terminal_talk(bool quiet, const char *fmt, ...)
         line(fmt, args);
         va_end(args);
     }
+}
+
+/* How a failure is said, and what the program ends with then. */
+
+int mt_cli_failed(mt_status rc, const mt_err *err)
+{
+    mt_terminal_error("%s", err->text);
+    if (rc == MT_E_MEMORY) {
+        drop_output();
+    }
+    return mt_exit_of(rc);
+}
+
+int mt_cli_loaded(mt_status rc, mt_diagnostics *messages, const mt_err *err)
+{
+    const bool told = mt_diagnostics_first_error(messages) >= 0;
+    mt_err shortage = {.code = MT_OK};
+    if (messages->lines.failed && rc != MT_E_MEMORY) { /* some of them are missing */
+        rc = mt_fail_memory(&shortage);
+        err = &shortage;
+    }
+    print_diagnostics(mt_diagnostics_text(messages));
+    mt_diagnostics_free(messages);
+    if (rc != MT_OK && !(told && rc == MT_E_INPUT)) {
+        return mt_cli_failed(rc, err);
+    }
+    return mt_exit_of(rc);
+}
+
+void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
+                  mt_diagnostics *messages)
+{
+    mt_diagnostic_place place = {.file = path};
+    if (rc != MT_E_INPUT || !mt_study_locate(study, err->text, &place.line, &place.column)) {
+        (void)mt_err_in(err, rc, "%s", path);
+        return;
+    }
+    mt_diagnostics_add(messages, MT_SEVERITY_ERROR, &place, err->text);
+}
+
+int mt_cli_json_done(mt_json_writer *w)
+{
+    if (mt_json_done(w)) {
+        return MT_EXIT_DONE;
+    }
+    if (!w->misused) {
+        return MT_EXIT_SYSTEM; /* mt_terminal_put tells */
+    }
+    mt_terminal_error("the output cannot be written as JSON");
+    return MT_EXIT_NUMERICAL;
 }
 
 /* True where standard error is a terminal. */
@@ -368,15 +434,6 @@ static void set_actions(void (*to)(int number))
 {
     set_action(SIGINT, to);
     set_action(SIGTERM, to);
-}
-
-void mt_terminal_ignore_signals(void)
-{
-    struct sigaction ignore;
-    memset(&ignore, 0, sizeof ignore);
-    ignore.sa_handler = SIG_IGN;
-    (void)sigaction(SIGPIPE, &ignore, NULL);
-    (void)sigaction(SIGXFSZ, &ignore, NULL);
 }
 
 void mt_terminal_hold_signals(void)
@@ -884,4 +941,55 @@ void mt_watch_end(bool complete)
         mt_progress_free(&it.progress);
     }
     it.has_progress = false;
+}
+
+/* --profile: how often each stage of the evaluations was done. */
+
+static const double NANOSECOND = 1e-9;
+
+/* Digits of a time. */
+enum { SECONDS_DIGITS = 3 };
+
+mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own)
+{
+    if (!args->given[MT_OPT_PROFILE]) {
+        return NULL;
+    }
+    mt_profile_init(own, mt_terminal_seconds);
+    return own;
+}
+
+int mt_cli_profile_print(mt_profile *p)
+{
+    if (p == NULL) {
+        return MT_EXIT_DONE;
+    }
+    mt_text text = {.s = NULL};
+    mt_table t = mt_table_default();
+    int code = MT_EXIT_DONE;
+    mt_table_column(&t, "stage", "stage", MT_ALIGN_LEFT);
+    mt_table_column(&t, "done", "done", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "shared", "shared", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "skipped", "skipped", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "time [s]", "time_s", MT_ALIGN_POINT);
+    mt_table_column(&t, "what it is", "what", MT_ALIGN_LEFT);
+    for (int i = 0; i < MT_STAGES; i++) {
+        mt_table_text(&t, mt_stage_name((mt_stage_id)i));
+        mt_table_integer(&t, atomic_load(&p->done[i]));
+        mt_table_integer(&t, atomic_load(&p->shared[i]));
+        mt_table_integer(&t, atomic_load(&p->skipped[i]));
+        mt_table_number(&t, NANOSECOND * (double)atomic_load(&p->nanoseconds[i]),
+                        SECONDS_DIGITS);
+        mt_table_text(&t, mt_stage_text((mt_stage_id)i));
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), &text);
+    if (text.failed) {
+        mt_err err;
+        code = mt_cli_failed(mt_fail_memory(&err), &err);
+    } else {
+        print_diagnostics(text.s);
+    }
+    mt_table_free(&t);
+    mt_text_free(&text);
+    return code;
 }

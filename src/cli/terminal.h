@@ -4,10 +4,13 @@
 
 #include <stdbool.h>
 
+#include "base/diagnostics.h"
 #include "base/run.h"
 #include "base/text.h"
 #include "cli/args.h"
+#include "io/write_json.h"
 #include "result/record.h"
+#include "study/study.h"
 
 /* The members of a line of progress. */
 extern const mt_record mt_progress_record;
@@ -36,31 +39,40 @@ int mt_exit_worse(int a, int b);
 /* Write the collected standard output; the text is empty afterwards. A closed reader (EPIPE) is
  * a failure without a message. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
 int mt_terminal_put(mt_text *out);
-/* Mark the collected text as incomplete for lack of memory: the next mt_terminal_put discards
- * it. */
-void mt_terminal_drop(void);
 /* Close standard output: a network disk may report a failed write only now. Returns as
  * mt_terminal_put. */
 int mt_terminal_close(void);
 /* Called at the start: open closed descriptors 0 to 2 so that using them fails; otherwise an
- * opened file could get one, and messages would go into it. */
+ * opened file could get one, and messages would go into it. SIGPIPE and SIGXFSZ become write
+ * errors; SIGINT and SIGTERM keep their action and end the program, except while they are
+ * held. */
 void mt_terminal_open(void);
 /* Write "modetune: error: ..." to standard error. */
 void mt_terminal_error(const char *fmt, ...) MT_PRINTF(1, 2);
 void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);
-/* Write lines of diagnostics to standard error; "error:" and "warning:" are coloured on a
- * terminal. */
-void mt_terminal_diagnostics(const char *lines);
 /* Messages: write a line to standard error unless quiet. */
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
+/* Report the outcome of loading a file: its diagnostics, or the error where there are none.
+ * Returns the exit status of rc; frees the messages. */
+int mt_cli_loaded(mt_status rc, mt_diagnostics *messages, const mt_err *err);
+
+/* Report an error found in a study with its model: in messages with its place where the study
+ * knows it, else in err with the file first. Nothing where rc is MT_OK. */
+void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
+                  mt_diagnostics *messages);
+
+/* Report err and return the exit status of rc. */
+int mt_cli_failed(mt_status rc, const mt_err *err);
+
+/* Close a JSON output. Returns MT_EXIT_DONE, or reports a failure and returns its exit
+ * status. */
+int mt_cli_json_done(mt_json_writer *w);
+
 /* Columns of the terminal of standard output; 0: not a terminal, or unknown. */
 int mt_terminal_width(void);
 /* Write lines to standard error unchanged. */
 void mt_terminal_write(const char *text, size_t length);
 
-/* Turn SIGPIPE and SIGXFSZ into write errors. SIGINT and SIGTERM keep their action and end the
- * program, except while they are held. */
-void mt_terminal_ignore_signals(void);
 /*
  * Hold and release signals. In between the first SIGINT or SIGTERM is only recorded, for work
  * that stops by itself (mt_terminal_stop_request) or must be completed; the second ends the
@@ -103,5 +115,11 @@ void mt_watch_hold(void);
 void mt_watch_go_on(void);
 /* Erase the line and write the last message. complete: nothing was cut. */
 void mt_watch_end(bool complete);
+
+/* Counters of the evaluations of a model from here on, with --profile; else NULL. */
+mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own);
+
+/* Print the stages as a table on standard error; NULL: nothing. Returns the exit status. */
+int mt_cli_profile_print(mt_profile *p);
 
 #endif

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/shipped.h"
-#include "io/file.h"
-
 static const double TWO_PI = 6.28318530717958647693;
 
 enum { DIGITS = 5, HZ_DIGITS = 6, BOUND_DIGITS = 2 };
@@ -116,22 +113,6 @@ void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v)
         mt_json_close(w);
     }
     mt_json_close(w);
-}
-
-mt_status mt_vibrated_load(const mt_args *args, const char *name, mt_vibration **out,
-                           mt_diagnostics *messages, mt_err *err)
-{
-    mt_io_options opt = mt_cli_io(args);
-    const mt_shipped *own = NULL;
-    if (strpbrk(name, "/.") != NULL || !mt_file_absent(name)) {
-        return mt_vibration_load(name, &opt, out, messages, err);
-    }
-    MT_TRY(mt_shipped_named(&mt_shipped_profiles, name, &own, err));
-    const mt_shipped *const aircraft = mt_shipped_find("problems/aircraft.json");
-    const mt_file_text texts[] = {{.path = own->path, .text = own->bytes},
-                                  {.path = aircraft->path, .text = aircraft->bytes}};
-    opt.files = (mt_files){.given = texts, .n = MT_COUNT(texts), .only = true};
-    return mt_vibration_load(own->path, &opt, out, messages, err);
 }
 
 const char *mt_vibrated_axis(const mt_vibration *v)

@@ -6,10 +6,6 @@
 #include "report/table.h"
 #include "vibration/profile_response.h"
 
-/* Load the profile in the file of that name, or, where there is none, the profile of that name
- * built into the program, with its catalogue. Fails and messages as mt_vibration_load. */
-mt_status mt_vibrated_load(const mt_args *args, const char *name, mt_vibration **out,
-                           mt_diagnostics *messages, mt_err *err);
 const char *mt_vibrated_axis(const mt_vibration *v); /* "z"; NULL: any */
 const char *mt_vibrated_name(const mt_vibration *v); /* its name, or its path */
 /* "the peak is 3 times the RMS and the sum of all tones" */

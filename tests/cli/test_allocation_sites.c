@@ -233,7 +233,7 @@ static void begin(void *context)
         mt_alloc_fail_only(r.k);
     }
     mt_sites_ask(mt_alloc_refuses);
-    mt_terminal_ignore_signals();
+    mt_terminal_open();
     mt_blas_set_threads(1);
     (void)gsl_set_error_handler_off(); /* as main does */
 }

@@ -263,7 +263,7 @@ static void begin(void *context)
 {
     const how way = *(const how *)context;
     (void)signal(SIGINT, SIG_DFL); /* a background job of a shell has it ignored */
-    mt_terminal_ignore_signals();
+    mt_terminal_open();
     mt_blas_set_threads(1);
     (void)gsl_set_error_handler_off(); /* as main does */
     if (way == STOPPED) {
@@ -343,7 +343,7 @@ static void codes__each_is_seen(mt_test *t)
         try_row(t, i, seen);
     }
     for (int c = 0; c < MT_CMD_IDS; c++) {
-        CHECK_STR(t, able[c].command, mt_commands[c].name);
+        CHECK_STR(t, able[c].command, mt_commands[c]->name);
         for (int k = 0; k < MT_COUNT(CODES); k++) {
             mt_test_row(t, "%s can end with %d", able[c].command, CODES[k]);
             CHECK_INT(t, seen[c][k], able[c].can[k]);

@@ -47,8 +47,8 @@ static void apply(const char *path)
     const size_t length = strlen(path);
     DEMAND(length < sizeof result);
     memcpy(result, path, length + 1);
-    DEMAND(mt_args_parse(MT_COUNT(argv) - 1, argv, &args, &err) == MT_OK);
-    const int code = mt_cmd_apply(&args, &out);
+    DEMAND(mt_args_parse(MT_COUNT(argv) - 1, argv, mt_commands, &args, &err) == MT_OK);
+    const int code = mt_command_apply.run(&args, &out);
     DEMAND(code == MT_EXIT_DONE || code == MT_EXIT_GOALS || code == MT_EXIT_INPUT);
     if (code == MT_EXIT_DONE) {
         DEMAND(mt_json_parse(out.s, out.length, &doc, &err) == MT_OK);
