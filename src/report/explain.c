@@ -60,6 +60,15 @@ static void add_room(const mt_result_parameter *p, mt_text *out)
         mt_report_number(fmax(p->upper - p->recommended, 0.0) / size, SHORT_DIGITS, number));
 }
 
+/* A change, displayed as by mt_table_shown. */
+static void add_change(mt_table *t, double value, double factor, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    mt_table_cell(t, mt_report_change(mt_result_shown(value, factor), digits, text),
+                  mt_report_exact(value, exact));
+}
+
 static void add_slope_row(mt_table *t, const mt_recommendation *r, const moved *g, int k)
 {
     const mt_result_parameter *const p = &r->parameters[k];
@@ -67,8 +76,7 @@ static void add_slope_row(mt_table *t, const mt_recommendation *r, const moved *
     add_room(p, &room);
     mt_table_text(t, g->text);
     mt_table_text(t, p->name);
-    mt_table_change_shown(t, value_change_per_percent(r, g, k), g->display_factor,
-                          SHORT_DIGITS);
+    add_change(t, value_change_per_percent(r, g, k), g->display_factor, SHORT_DIGITS);
     mt_table_unit(t, g->unit != NULL && g->unit[0] != '\0' ? g->unit : NULL, g->display_unit);
     mt_table_shown(t, p->recommended, p->display_factor, VALUE_DIGITS);
     mt_table_unit(t, p->unit, p->display_unit);

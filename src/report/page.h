@@ -57,6 +57,11 @@ void mt_report_question(const mt_result *result, mt_text *out);
  * question and the model's assumptions. out->failed remembers a shortage of memory. */
 void mt_report_title(const mt_result *result, mt_text *out);
 
+/* The abstract of a page: the status, then in a few lines the changes of the best design, how
+ * it meets the goals, what is proven, and alternatives. out->failed remembers a shortage of
+ * memory. */
+void mt_report_abstract(const mt_result *result, mt_text *out);
+
 /* One of several studies run together. */
 typedef struct mt_index_study {
     const char *path;    /* path as given */

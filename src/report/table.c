@@ -66,9 +66,6 @@ const char *mt_report_exact(double x, char buffer[MT_NUMBER_TEXT])
 
 enum { INTEGER_TEXT = 24 };
 
-/* A goal is met up to this many percent of it, unless it says otherwise. */
-static const double LEFT_OPEN = 1e-4;
-
 mt_table mt_table_default(void)
 {
     mt_table t = {.columns = NULL};
@@ -113,7 +110,7 @@ void mt_table_column(mt_table *t, const char *heading, const char *member, mt_al
     t->columns[t->n_columns++] = column;
 }
 
-static void add_cell(mt_table *t, const char *text, const char *exact)
+void mt_table_cell(mt_table *t, const char *text, const char *exact)
 {
     const mt_cell cell = {copy_visible(t, text), copy(t, exact), NULL};
     if (t->failed) {
@@ -131,43 +128,22 @@ static void add_cell(mt_table *t, const char *text, const char *exact)
 
 void mt_table_text(mt_table *t, const char *text)
 {
-    add_cell(t, text == NULL ? "-" : text, text == NULL ? "" : text);
-}
-
-void mt_table_verdict(mt_table *t, const char *text, bool good)
-{
-    mt_table_text(t, text);
-    if (!t->failed) {
-        t->cells[t->n_cells - 1].mark = good ? "good" : "bad";
-    }
+    mt_table_cell(t, text == NULL ? "-" : text, text == NULL ? "" : text);
 }
 
 void mt_table_integer(mt_table *t, long long value)
 {
     char s[INTEGER_TEXT];
     (void)mt_snprintf(s, sizeof s, "%lld", value);
-    add_cell(t, s, s);
+    mt_table_cell(t, s, s);
 }
 
 void mt_table_shown(mt_table *t, double value, double factor, int digits)
 {
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
-    add_cell(t, mt_report_number(mt_result_shown(value, factor), digits, text),
-             mt_report_exact(value, exact));
-}
-
-void mt_table_in_unit(mt_table *t, double value, double factor, int digits)
-{
-    mt_table_shown(t, mt_result_shown(value, factor), 1.0, digits);
-}
-
-void mt_table_rounded(mt_table *t, double value, int digits)
-{
-    char text[MT_NUMBER_TEXT];
-    char exact[MT_NUMBER_TEXT];
-    (void)mt_snprintf(exact, sizeof exact, "%.*g", digits, value);
-    add_cell(t, mt_report_number(value, digits, text), isfinite(value) ? exact : "");
+    mt_table_cell(t, mt_report_number(mt_result_shown(value, factor), digits, text),
+                  mt_report_exact(value, exact));
 }
 
 void mt_table_number(mt_table *t, double value, int digits)
@@ -178,30 +154,14 @@ void mt_table_number(mt_table *t, double value, int digits)
 void mt_table_unit(mt_table *t, const char *unit, const char *display_unit)
 {
     const char *const shown = display_unit != NULL ? display_unit : unit;
-    add_cell(t, shown == NULL ? "-" : shown, unit == NULL ? "" : unit);
-}
-
-void mt_table_change_shown(mt_table *t, double value, double factor, int digits)
-{
-    char text[MT_NUMBER_TEXT];
-    char exact[MT_NUMBER_TEXT];
-    add_cell(t, mt_report_change(mt_result_shown(value, factor), digits, text),
-             mt_report_exact(value, exact));
+    mt_table_cell(t, shown == NULL ? "-" : shown, unit == NULL ? "" : unit);
 }
 
 void mt_table_change(mt_table *t, double value, int digits)
 {
-    mt_table_change_shown(t, value, 1.0, digits);
-}
-
-void mt_table_quoted(mt_table *t, double value, double factor)
-{
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
-    const double shown = mt_result_shown(value, factor);
-    (void)mt_snprintf(text, sizeof text, "%.10g", shown);
-    add_cell(t, isfinite(shown) ? text : mt_report_number(shown, 1, text),
-             mt_report_exact(value, exact));
+    mt_table_cell(t, mt_report_change(value, digits, text), mt_report_exact(value, exact));
 }
 
 void mt_table_percent(mt_table *t, double value, int digits)
@@ -209,34 +169,7 @@ void mt_table_percent(mt_table *t, double value, int digits)
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
     const double shown = mt_without_noise(value, MT_PERCENT_NOISE);
-    add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
-}
-
-void mt_table_off_by(mt_table *t, double percent, bool met, int digits)
-{
-    char text[MT_NUMBER_TEXT];
-    char exact[MT_NUMBER_TEXT];
-    const double shown = mt_without_noise(percent, met ? LEFT_OPEN : MT_PERCENT_NOISE);
-    add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(percent, exact));
-}
-
-void mt_table_clearance(mt_table *t, double percent, double margin, int digits)
-{
-    char text[MT_NUMBER_TEXT];
-    char exact[MT_NUMBER_TEXT];
-    const bool kept = fabs(percent - margin) <= LEFT_OPEN * (1.0 + (0.01 * margin));
-    add_cell(t, mt_report_number(kept ? margin : percent, digits, text),
-             mt_report_exact(percent, exact));
-}
-
-void mt_table_difference(mt_table *t, double value, double percent, double factor, int digits)
-{
-    char text[MT_NUMBER_TEXT];
-    char exact[MT_NUMBER_TEXT];
-    const bool noise = fabs(percent) < MT_PERCENT_NOISE;
-    const double shown = noise ? 0.0 : mt_result_shown(value, factor);
-    add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
-    mt_table_percent(t, percent, digits);
+    mt_table_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
 }
 
 void mt_table_ratio(mt_table *t, double value, int digits)
@@ -244,7 +177,7 @@ void mt_table_ratio(mt_table *t, double value, int digits)
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
     const double shown = mt_without_noise(value, MT_RATIO_NOISE);
-    add_cell(t, mt_report_number(shown, digits, text), mt_report_exact(value, exact));
+    mt_table_cell(t, mt_report_number(shown, digits, text), mt_report_exact(value, exact));
 }
 
 int mt_table_rows(const mt_table *t)

@@ -46,37 +46,22 @@ mt_table mt_table_default(void);
 void mt_table_free(mt_table *t);
 /* Add a column; all columns before the first cell. Texts are copied. */
 void mt_table_column(mt_table *t, const char *heading, const char *member, mt_align align);
-/* Add a cell. NULL and NaN are "-" for people and empty for machines. */
+/* Add a cell: its text for people, and for machines. */
+void mt_table_cell(mt_table *t, const char *text, const char *exact);
+/* Cells of texts and numbers; NULL and NaN are "-" for people and empty for machines. */
 void mt_table_text(mt_table *t, const char *text);
-/* A cell that a page shows as good or bad. */
-void mt_table_verdict(mt_table *t, const char *text, bool good);
 void mt_table_integer(mt_table *t, long long value);
 void mt_table_number(mt_table *t, double value, int digits);
-void mt_table_rounded(mt_table *t, double value, int digits); /* for machines, too */
-void mt_table_change(mt_table *t, double value, int digits);  /* with its sign */
+void mt_table_change(mt_table *t, double value, int digits); /* with its sign */
 /* A number, and the name of its unit, displayed to people in another unit, as value / factor
  * (result/result.h), and given to machines in SI. Factor NULL or not above 0: in the unit
  * itself. */
 void mt_table_shown(mt_table *t, double value, double factor, int digits);
-/* The same, with machines given the displayed value: their heading names the unit. */
-void mt_table_in_unit(mt_table *t, double value, double factor, int digits);
-void mt_table_change_shown(mt_table *t, double value, double factor, int digits);
 void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
-/* A published number in the displayed unit, with at most 10 digits and no trailing zeros. */
-void mt_table_quoted(mt_table *t, double value, double factor);
 /* mt_table_percent: a percentage with its sign; mt_table_ratio: a ratio without. For people,
  * noise (base/number.h) is written as 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
-/* The deviation of a goal; for a met goal, a deviation within the accuracy of searches is 0 for
- * people. */
-void mt_table_off_by(mt_table *t, double percent, bool met, int digits);
-/* A clearance; one that equals its margin within the accuracy of searches is shown as the
- * margin. */
-void mt_table_clearance(mt_table *t, double percent, double margin, int digits);
 void mt_table_ratio(mt_table *t, double value, int digits);
-/* Two cells: a difference, displayed as by mt_table_shown, and the same in percent; both 0
- * where it is noise. */
-void mt_table_difference(mt_table *t, double value, double percent, double factor, int digits);
 int mt_table_rows(const mt_table *t);
 
 /* Heading, rule, rows; two blanks between columns, `indent` before the first, none after the

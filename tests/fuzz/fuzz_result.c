@@ -8,7 +8,6 @@
 #include "common/fuzz.h"
 #include "io/json.h"
 #include "report/page.h"
-#include "report/result_tables.h"
 #include "report/summary.h"
 #include "result/read.h"
 #include "result/write.h"

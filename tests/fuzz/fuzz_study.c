@@ -16,7 +16,6 @@
 #include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "report/page.h"
-#include "report/result_tables.h"
 #include "report/summary.h"
 #include "result/read.h"
 #include "result/result.h"

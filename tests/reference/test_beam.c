@@ -16,7 +16,7 @@
 #include "io/options.h"
 #include "model/read.h"
 #include "mt_test.h"
-#include "report/result_tables.h"
+#include "report/summary.h"
 #include "result/result.h"
 #include "study/read.h"
 #include "study/study.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "report/summary.h"
+#include "report/page.h"
 #include "support/mt_test.h"
 
 static mt_result_parameter parameter(const char *name, double original, double recommended)

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "mt_test.h"
+#include "report/design.h"
 #include "report/page.h"
-#include "report/result_tables.h"
 #include "report/summary.h"
 
 static mt_result_parameter parameters[2];

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "report/ruler.h"
+#include "report/design.h"
 
 enum { MODES = 3 };
 

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "mt_test.h"
+#include "report/design.h"
+#include "report/summary.h"
 #include "report/table.h"
 
 static void number__shows_significant_digits(mt_test *t)
