@@ -6,6 +6,7 @@
 #include "base/workers.h"
 #include "problem/problem.h"
 #include "study/study.h"
+#include "search/relaxation.h"
 
 /* Called before a proof that may take long, with the answer so far (status "interrupted"),
  * which the caller may keep in case the run is killed. */
@@ -25,6 +26,13 @@ mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt
                               const mt_run *run, const mt_incumbent_callback *incumbent,
                               mt_result **out, mt_err *err);
 
+/* What is known of a study from one that differs in one number, by little. */
+typedef struct mt_neighbour {
+    bool alone;           /* its starts found one design, or none */
+    bool impossible;      /* no design meets all goals: proven of one that asks for less */
+    mt_moves_known known; /* its relaxations */
+} mt_neighbour;
+
 /*
  * A compiled study and its own run. The study is the caller's. It may be answered repeatedly,
  * one answer at a time, and must not move: the problem points into it.
@@ -35,6 +43,10 @@ typedef struct mt_question {
     mt_interrupt interrupt;
     mt_work_counters spent; /* of all answers to it */
     mt_problem *p;          /* owned */
+    /* NULL: none is used; its best design is the caller's start (mt_solve_options) */
+    const mt_neighbour *neighbour;
+    mt_moves *moves; /* gets those of the relaxations, in moves_mem; NULL: they are not kept */
+    mt_arena *moves_mem;
 } mt_question;
 
 /* Remaining evaluations; LONG_MAX: the study sets no budget. */

@@ -378,17 +378,22 @@ typedef struct point {
 
 /* Points that are compiled at a time, beside a row of the grid: each has about a quarter of a
  * megabyte, or what its model needs. */
-enum { BLOCK = 64 };
+enum { BLOCK = 75 };
 /* Evaluations beside one local search that asks whether a neighbour knows better; and without
  * which a point is not searched again. */
 enum { LOOKS = 3, WARM_LEAST = 30 };
 enum { WAYS = 4 }; /* neighbours of a point */
+/* Points of a line of the grid that one worker answers one after the other, each from what is
+ * known of the one before: as many where that leaves so many tasks, or fewer. */
+enum { STRETCH_MOST = 5, STRETCHES_LEAST = 32 };
 
 typedef struct trade {
     const mt_study *study;
     const mt_run *run; /* of all points */
     int n;
     int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
+    int line;              /* points of a line, in which the last quantity varies */
+    int stretch;           /* points of a stretch */
     int from;              /* point of the first task */
     int told;              /* points whose answers the result has; of others it is not known */
     mt_trade_result *out;
@@ -503,34 +508,6 @@ static void note_work_counters(point *p, int sign)
     }
 }
 
-static mt_status solve_cold(void *context, int worker, int task, mt_task_path *own, mt_err *err)
-{
-    const trade *const t = context;
-    const int k = t->from + task;
-    point *const p = &t->points[k];
-    (void)worker;
-    if (stopped(t)) {
-        return MT_OK;
-    }
-    mt_status rc = compile_trade_point(t, p, err);
-    rc = rc == MT_OK ? answer(p, NULL, own, &p->first, err) : rc;
-    note_work_counters(p, 1);
-    if (rc != MT_OK || !t->warm) {
-        forget(p);
-    }
-    return told(t, k, rc, err);
-}
-
-/* Neighbour `way` (0 to 3) of point k on the grid, -1 where there is none. */
-static int neighbour(const trade *t, int k, int way)
-{
-    const int axis = way / 2;
-    const int step = way % 2 == 0 ? -1 : 1;
-    const int stride = axis == 0 ? t->size[1] : 1;
-    const int at = axis == 0 ? k / t->size[1] : k % t->size[1];
-    return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
-}
-
 /* The recommended values of a design, in mem; NULL without one. */
 static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const double **x,
                            mt_err *err)
@@ -546,6 +523,110 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     }
     *x = values;
     return MT_OK;
+}
+
+/* First point behind the stretch that begins at point k. */
+static int stretch_end(const trade *t, int k)
+{
+    const int line_end = k - (k % t->line) + t->line;
+    return k + t->stretch < line_end ? k + t->stretch : line_end;
+}
+
+/* First point of task `task` of those from t->from on. */
+static int stretch_of(const trade *t, int task)
+{
+    int k = t->from;
+    for (int i = 0; i < task; i++) {
+        k = stretch_end(t, k);
+    }
+    return k;
+}
+
+/* True where designs of point k + 1 are designs of point k: what varies between them only takes
+ * designs away. */
+static bool only_takes_away(const trade *t, int k)
+{
+    const int i = t->study->trade.n_vary - 1;
+    const mt_vary *const v = &t->study->trade.vary[i];
+    const double from = t->points[k].values[i];
+    const double to = t->points[k + 1].values[i];
+    switch (v->kind) {
+    case MT_VARY_BOUND:
+        return v->upper ? to <= from : to >= from;
+    case MT_VARY_GOAL:
+        return v->slot == MT_SLOT_AT_LEAST  ? to >= from
+               : v->slot == MT_SLOT_AT_MOST ? to <= from
+                                            : false;
+    case MT_VARY_PARAMETER:
+        break;
+    }
+    return false;
+}
+
+/* Point k. near, hint[n_variables]: what is known of it from k - 1; NULL: nothing. moves: gets
+ * its relaxations, in mem. */
+static mt_status solve_point(const trade *t, int k, const mt_neighbour *near,
+                             const double *hint, mt_moves *moves, mt_arena *mem,
+                             mt_task_path *own, mt_err *err)
+{
+    point *const p = &t->points[k];
+    mt_status rc = compile_trade_point(t, p, err);
+    if (rc == MT_OK) {
+        p->q->neighbour = near;
+        p->q->moves = moves;
+        p->q->moves_mem = mem;
+        rc = answer(p, hint, own, &p->first, err);
+        p->q->neighbour = NULL;
+        p->q->moves = NULL;
+    }
+    note_work_counters(p, 1);
+    if (rc != MT_OK || !t->warm) {
+        forget(p);
+    }
+    return told(t, k, rc, err);
+}
+
+/* The points of a stretch, in order. */
+static mt_status solve_stretch(const trade *t, int first, mt_arena *mem, mt_task_path *own,
+                               mt_err *err)
+{
+    const mt_trade *const asked = &t->study->trade;
+    const int end = stretch_end(t, first);
+    mt_moves moves = {0};
+    for (int k = first; k < end && !stopped(t); k++) {
+        const mt_moves known = moves;
+        const mt_result *const last = k > first ? t->points[k - 1].first : NULL;
+        const bool none = last != NULL && last->status == MT_RESULT_INFEASIBLE;
+        const mt_neighbour near = {.alone = last != NULL && last->run.distinct_designs <= 1,
+                                   .impossible = none && only_takes_away(t, k - 1),
+                                   .known = {&known, &asked->vary[asked->n_vary - 1]}};
+        const double *x = NULL;
+        moves = (mt_moves){0};
+        MT_TRY(values_of(best_recommendation(last), mem, &x, err));
+        MT_TRY(solve_point(t, k, x != NULL ? &near : NULL, x, &moves, mem, own, err));
+    }
+    return MT_OK;
+}
+
+static mt_status solve_cold(void *context, int worker, int task, mt_task_path *own, mt_err *err)
+{
+    const trade *const t = context;
+    mt_arena mem;
+    (void)worker;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    const mt_status rc = solve_stretch(t, stretch_of(t, task), &mem, own, err);
+    mt_arena_free(&mem);
+    return rc;
+}
+
+/* Neighbour `way` (0 to 3) of point k on the grid, -1 where there is none. */
+static int neighbour(const trade *t, int k, int way)
+{
+    const int axis = way / 2;
+    const int step = way % 2 == 0 ? -1 : 1;
+    const int stride = axis == 0 ? t->size[1] : 1;
+    const int at = axis == 0 ? k / t->size[1] : k % t->size[1];
+    return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
 }
 
 /* True where a is the better answer of one point, by more than searches differ. Among feasible
@@ -685,35 +766,48 @@ static void serialize_result(const trade *t, mt_result **r, mt_serializer *seria
 }
 
 /* Writes or reads one pass of a point: its answer, and the point's work so far. */
-static void serialize_point(const trade *t, int task, bool warm, mt_serializer *serializer)
+static void serialize_point(const trade *t, int k, bool warm, mt_serializer *serializer)
 {
-    point *const p = &t->points[t->from + task];
+    point *const p = &t->points[k];
     mt_result **const r = warm ? &p->again : &p->first;
-    const long before[] = {p->evaluations, p->multiplications, p->solutions};
     mt_serializer_long(serializer, &p->evaluations, 0, LONG_MAX);
     mt_serializer_long(serializer, &p->multiplications, 0, LONG_MAX);
     mt_serializer_long(serializer, &p->solutions, 0, LONG_MAX);
     serialize_result(t, r, serializer);
     serializer->failed = serializer->failed || (!warm && *r == NULL);
-    if (serializer->reads && !mt_serializer_is_read(serializer)) {
-        mt_result_delete(*r);
-        *r = NULL;
-        p->evaluations = before[0];
-        p->multiplications = before[1];
-        p->solutions = before[2];
-    } else if (serializer->reads && warm) {
-        forget(p);
-    }
 }
 
 static void serialize_cold(void *context, int task, mt_serializer *serializer)
 {
-    serialize_point(context, task, false, serializer);
+    const trade *const t = context;
+    const int first = stretch_of(t, task);
+    const int end = stretch_end(t, first);
+    for (int k = first; k < end && !serializer->failed; k++) {
+        serialize_point(t, k, false, serializer);
+    }
+    for (int k = first; k < end && serializer->reads && !mt_serializer_is_read(serializer);
+         k++) {
+        point *const p = &t->points[k];
+        mt_result_delete(p->first);
+        *p = (point){.values = {p->values[0], p->values[1]}};
+    }
 }
 
 static void serialize_warm(void *context, int task, mt_serializer *serializer)
 {
-    serialize_point(context, task, true, serializer);
+    const trade *const t = context;
+    point *const p = &t->points[t->from + task];
+    const long before[] = {p->evaluations, p->multiplications, p->solutions};
+    serialize_point(t, t->from + task, true, serializer);
+    if (serializer->reads && !mt_serializer_is_read(serializer)) {
+        mt_result_delete(p->again);
+        p->again = NULL;
+        p->evaluations = before[0];
+        p->multiplications = before[1];
+        p->solutions = before[2];
+    } else if (serializer->reads) {
+        forget(p);
+    }
 }
 
 /* The unit of what varies; NULL: it has none. */
@@ -753,6 +847,16 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     return MT_OK;
 }
 
+/* True where points may begin from others. A budget is of each point: what it spends follows
+ * from nothing but its own question. With bands a point is a search of each mode placement,
+ * which another's design hardly helps. */
+static bool may_begin_from_others(const trade *t)
+{
+    const mt_search *const search = &t->study->search;
+    return t->warm && !mt_study_has_bands(t->study) && search->starts <= 0 &&
+           search->max_evaluations <= 0 && search->max_modal_solutions <= 0;
+}
+
 static mt_status allocate_trade_points(trade *t, mt_err *err)
 {
     const mt_trade *const asked = &t->study->trade;
@@ -761,6 +865,9 @@ static mt_status allocate_trade_points(trade *t, mt_err *err)
         t->size[i] = i < asked->n_vary ? asked->vary[i].n_values : 1;
         t->n *= t->size[i];
     }
+    const int share = may_begin_from_others(t) ? t->n / STRETCHES_LEAST : 1;
+    t->line = t->size[asked->n_vary - 1];
+    t->stretch = share < 1 ? 1 : share < STRETCH_MOST ? share : STRETCH_MOST;
     t->points = mt_arena_alloc(t->mem, (size_t)t->n, sizeof *t->points);
     t->best = mt_arena_alloc(t->mem, (size_t)t->n, sizeof(const mt_recommendation *));
     t->out = mt_arena_alloc(t->kept, 1, sizeof *t->out);
@@ -859,9 +966,14 @@ static mt_status solve_all(trade *t, int threads, const mt_task_path *task_path,
     mt_status part = MT_OK;
     int ready = 0;
     for (int known = 0; known < t->n;) {
-        const int to = t->n - known > BLOCK ? known + BLOCK : t->n;
+        int runs = 0;
+        int to = known;
+        for (; to < t->n && (runs == 0 || stretch_end(t, to) - known <= BLOCK); runs++) {
+            to = stretch_end(t, to);
+        }
         t->from = known;
-        const mt_tasks cold = {to - known, solve_cold, serialize_cold, t, "points"};
+        const mt_tasks cold = {runs, solve_cold, serialize_cold, t,
+                               t->stretch > 1 ? "stretches of points" : "points"};
         const mt_status rc = mt_workers_run(threads, &first, &cold, err);
         MT_TRY(rc == MT_E_INTERRUPTED ? MT_OK : rc);
         part = rc == MT_OK ? part : rc;

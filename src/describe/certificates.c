@@ -8,6 +8,7 @@
 
 #include "describe/describe.h"
 #include "problem/configuration.h"
+#include "problem/requirement.h"
 #include "prove/certify.h"
 #include "prove/reach.h"
 #include "search/proof.h"
@@ -247,11 +248,26 @@ static mt_status jointly(const mt_proof *proof, long boxes, mt_arena *mem, mt_re
                  found.boxes);
 }
 
+/* True where a goal is a limit or target of a frequency, which a box may exclude. */
+static bool limits_frequency(const mt_problem *p)
+{
+    bool found = false;
+    for (int i = 0; i < p->n_requirements && !found; i++) {
+        const mt_requirement *const d = &p->requirements[i];
+        found = d->role != MT_ROLE_RESIDUAL && mt_requirement_is_frequency(d);
+    }
+    return found;
+}
+
 mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_arena *mem,
                                          mt_result *result, bool *infeasible, mt_err *err)
 {
     mt_proof proof;
-    *infeasible = false;
+    *infeasible = p->study->examined && boxes > 0 && limits_frequency(p);
+    if (*infeasible) { /* no more is told of a point of a trade study */
+        mt_progress_proved(p->run->progress);
+        return MT_OK;
+    }
     mt_status rc = mt_proof_init(&proof, &p->whole, mem, err);
     if (rc == MT_OK && !proof.possible && proof.reason[0] != '\0') {
         rc = state(result, "infeasible", false, err,

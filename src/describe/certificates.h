@@ -19,7 +19,8 @@ const char *mt_describe_placements_left(const mt_mode_placement_result *placemen
                                         mt_arena *mem);
 /* Add the reachable range of each limit, after a search without bands that did not meet all
  * goals. boxes: of the search's own proof that no design meets all of them; 0: there is none.
- * *infeasible: it is proven that no design exists. */
+ * *infeasible: it is proven that no design exists. Of a point of a trade study, whose
+ * certificates are not told, only that, and without a further proof where boxes > 0. */
 mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_arena *mem,
                                          mt_result *result, bool *infeasible, mt_err *err);
 

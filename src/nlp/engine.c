@@ -48,6 +48,7 @@ mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_o
                              mt_err *err)
 {
     *e = (mt_nlp_engine){.nlp = nlp, .opt = *opt, .n = nlp->n, .err = err};
+    e->impossible = opt->none;
     MT_TRY(check_problem(nlp, err));
     MT_TRY(mt_arena_init(&e->scratch, 0, err));
     e->origin = mt_arena_f64(&e->scratch, (size_t)e->n, 1);

@@ -445,7 +445,9 @@ static bool make_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int first, 
     bool more = true;
     for (int left = first; left > 0 && more;) {
         const int agree = all->starts == 0 ? e->opt.agree : 0;
-        const int batch = agree > 0 ? agree : e->opt.settles ? STARTS_EACH : left;
+        const bool second = e->opt.agree > 0 && all->starts == e->opt.agree;
+        const int each = second ? STARTS_EACH - e->opt.agree : STARTS_EACH;
+        const int batch = agree > 0 ? agree : e->opt.settles ? each : left;
         const int now = batch < left ? batch : left;
         more = add_starts(e, all, now, steps);
         const bool enough = e->impossible ||

@@ -96,6 +96,7 @@ typedef struct mt_nlp_options {
      * from the next starts, and makes more only where these end at different points. NULL: no
      * such proof */
     mt_status (*prove_none)(void *context, bool *none, mt_err *err);
+    bool none; /* that is known already: prove_none is not called */
     void *prove_context;
 } mt_nlp_options;
 mt_nlp_options mt_nlp_options_default(void);

@@ -57,9 +57,6 @@ typedef struct mt_subproblem {
     double proof_work;
     /* local solves of a search where the study sets no number; 0: by the number of variables */
     int starts;
-    /* of these, enough where they end at one feasible design (as_found: at equally good ones);
-     * 0: all */
-    int agree;
     bool best_alone; /* only the best design is wanted */
     bool as_found;   /* any of equally good designs will do: the nearest is not searched */
     int n_t;         /* n, or n + 1 */

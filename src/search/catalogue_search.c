@@ -290,7 +290,7 @@ static mt_status close_on(const mt_catalogue_search *d, const mt_combination *c,
     MT_TRY(mt_catalogue_search_close(d->c, x, w, mem, out, err));
     if (out->search.starts <= 0) {
         out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_listed));
-        out->agree = STARTS_AGREE;
+        out->search.agree = out->rows.eq.n < p->n - d->n_listed ? STARTS_AGREE : 0;
     }
     out->search.max_evaluations = budget > 1 ? budget - 1 : budget; /* its objectives */
     out->proof_work = fmin(out->proof_work, MT_CERTIFY_WORK);       /* there are many */

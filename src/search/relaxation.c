@@ -248,6 +248,22 @@ static void relaxation_keep(mt_move *m, double size, double change, double to, c
     memcpy(m->x, x, (size_t)n * sizeof *m->x);
 }
 
+mt_status mt_moves_copy(const mt_moves *from, int n_variables, mt_arena *mem, mt_moves *out,
+                        mt_err *err)
+{
+    const size_t n = (size_t)n_variables;
+    *out = *from;
+    out->items = mt_arena_alloc(mem, (size_t)from->n, sizeof *out->items);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < from->n; i++) {
+        out->items[i] = from->items[i];
+        out->items[i].x = mt_arena_f64(mem, n, 1);
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(out->items[i].x, from->items[i].x, n * sizeof(double));
+    }
+    return MT_OK;
+}
+
 void mt_relaxation_merge(mt_moves *to, const mt_moves *from, int n)
 {
     for (int i = 0; i < from->n; i++) {
@@ -412,6 +428,8 @@ static const near_miss *relaxation_miss(const near_misses *misses, const int *be
 enum { STARTS = 6, AGREE = 3, EVALUATIONS = 200, ASSIGNMENTS = 6 };
 /* Where the study sets a budget: what a search of one move needs at least of it. */
 enum { BUDGET_LEAST = 2 * EVALUATIONS };
+/* KKT residuals of local minima, as in searches. */
+static const double STATIONARY = 1e-6;
 /* A move smaller than this is none: then a design exists without it, and the search has missed
  * it. */
 static const double LEAST = 1e-9;
@@ -437,6 +455,7 @@ typedef struct task_result {
     long evals;
     int starts;
     bool stopped;
+    bool one; /* as of an answer */
 } task_result;
 
 typedef struct job {
@@ -444,6 +463,8 @@ typedef struct job {
     const mt_subproblem *c;
     mt_moves *moves;
     const double *near;
+    const mt_moves_known *known; /* of another study, or NULL */
+    bool sizes; /* of each move how far is sought alone: the least one's design comes after */
     near_misses misses;
     mt_mode_placement_candidates assignments; /* to look into for moves of no bound */
     long budget;                              /* evaluations of each move */
@@ -516,6 +537,8 @@ static mt_status evaluate_relaxed(void *context, const double *t, bool with_grad
 typedef struct answer {
     mt_arena *mem;
     const double *near;     /* [n] where the search begins; NULL: nowhere */
+    const mt_move *known;   /* the same of another study, or NULL */
+    bool one;               /* all searches for how far ended at one design */
     double *x;              /* [n] */
     double value;           /* that the number must have there; NaN: it does not do */
     long evals;             /* of its confirmations */
@@ -664,6 +687,52 @@ static mt_status search_least_change(mt_nlp nlp, mt_nlp_options opt, const doubl
     return MT_OK;
 }
 
+/* The move of the same number that the other study has; NULL: it has none. */
+static const mt_move *find_known_move(const mt_moves_known *known, const mt_move *m)
+{
+    for (int i = 0; known != NULL && i < known->moves->n; i++) {
+        const mt_move *const k = &known->moves->items[i];
+        if (k->kind == m->kind && k->upper == m->upper && k->variable == m->variable &&
+            k->avoidance == m->avoidance && k->band == m->band &&
+            k->requirement == m->requirement && k->target == m->target) {
+            return k;
+        }
+    }
+    return NULL;
+}
+
+/* The coordinates of a design that goes with s, into out[n + 1]. */
+static void coordinates_of(const mt_problem *p, const mt_move *m, double s, double *out)
+{
+    for (int i = 0; i < p->n; i++) {
+        out[i] = mt_problem_t(p, i, m->x[i]);
+    }
+    out[p->n] = m->target && m->to < m->from ? -s : s;
+}
+
+/* How far, from the design of the other study's move alone. *enough: the search ended at a
+ * local minimum. */
+static mt_status search_from_known(mt_nlp nlp, mt_nlp_options opt, const mt_move *known,
+                                   task_result *out, mt_nlp_result *found, bool *enough,
+                                   mt_err *err)
+{
+    const relaxed *const r = nlp.context;
+    const mt_problem *const p = r->w->p;
+    double *const hint = mt_arena_f64(&out->mem, (size_t)p->n + 1, 1);
+    MT_TRY(mt_arena_check(&out->mem, err));
+    const double size = mt_relaxation_size(p, r->move, known->to);
+    coordinates_of(p, known, MT_HAS(size) ? size : known->size, hint);
+    nlp.hint = hint;
+    opt.starts = 2;
+    opt.skip = 1;
+    opt.agree = 0;
+    opt.no_compromise = true;
+    MT_TRY(solve_move_size(r->w, &nlp, &opt, out, found, err));
+    *enough = found->n_solutions > 0 && found->solutions[0].feasible &&
+              !(found->solutions[0].kkt > STATIONARY);
+    return MT_OK;
+}
+
 /* One search in subproblem c, to which w is set. */
 static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt_move *m,
                              task_result *out, answer *a, bool *again, mt_err *err)
@@ -687,7 +756,11 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
     MT_TRY(mt_arena_check(&out->mem, err));
     const mt_nlp nlp = nlp_of(&r, c, a->near, hint);
-    MT_TRY(solve_move_size(w, &nlp, &opt, out, &found, err));
+    bool enough = false;
+    if (a->known != NULL) {
+        MT_TRY(search_from_known(nlp, opt, a->known, out, &found, &enough, err));
+    }
+    MT_TRY(enough ? MT_OK : solve_move_size(w, &nlp, &opt, out, &found, err));
     if (found.n_solutions == 0) {
         return MT_OK;
     }
@@ -698,8 +771,10 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     }
     const double *least = NULL;
     a->value = nan("");
-    const bool one = found.starts == AGREE && s->hits == AGREE;
-    MT_TRY(search_least_change(nlp, opt, s->t, one, left_of(j, c, out, a), out, &least, err));
+    a->one = enough || (found.starts == AGREE && s->hits == AGREE);
+    MT_TRY(j->sizes ? MT_OK
+                    : search_least_change(nlp, opt, s->t, a->one, left_of(j, c, out, a), out,
+                                          &least, err));
     MT_TRY(least != NULL ? keep_confirmed_move(c, m, size, least, a, again, err) : MT_OK);
     return MT_HAS(a->value) || *again ? MT_OK
                                       : keep_confirmed_move(c, m, size, s->t, a, again, err);
@@ -712,6 +787,7 @@ static mt_status search_in(const job *j, mt_subproblem *c, mt_workspace *w, mt_m
 {
     mt_arena *const mem = &out->mem;
     answer a = {.mem = mem, .near = near, .x = mt_arena_f64(mem, (size_t)c->p->n, 1)};
+    a.known = c->p->n_avoidances == 0 ? find_known_move(j->known, m) : NULL;
     bool again = true;
     MT_TRY(mt_arena_check(mem, err));
     mt_status rc = search_once(j, c, w, m, out, &a, &again, err);
@@ -724,6 +800,7 @@ static mt_status search_in(const job *j, mt_subproblem *c, mt_workspace *w, mt_m
         rc = search_once(j, held, w, m, out, &a, &again, err);
     }
     out->evals += a.evals;
+    out->one = a.one;
     return rc;
 }
 
@@ -776,6 +853,99 @@ static mt_status is_useless(const job *j, const mt_subproblem *c, const mt_move 
     return mt_infeasible_presolve(&q, mem, useless, err);
 }
 
+/* True where the studies differ in nothing but the number that moves: what remains without it
+ * is the same. */
+static bool is_the_difference(const job *j, const mt_move *m)
+{
+    const mt_problem *const p = j->c->p;
+    const mt_vary *const v = j->known != NULL ? j->known->number : NULL;
+    int of_goal = 0;
+    if (v == NULL || v->kind != MT_VARY_GOAL || m->kind != MT_MOVE_GOAL || m->target ||
+        v->slot != (m->upper ? MT_SLOT_AT_MOST : MT_SLOT_AT_LEAST) ||
+        measure_of(p, m) != MT_MEASURE_RATIO) {
+        return false;
+    }
+    for (int i = 0; i < p->n_requirements; i++) {
+        of_goal += p->requirements[i].goal_index == v->goal;
+    }
+    return of_goal == 1 && p->requirements[m->requirement].goal_index == v->goal;
+}
+
+/* Takes the other study's design, w being set to c; as far as the number is farther from it. */
+static mt_status take_known(mt_workspace *w, const mt_move *known, mt_move *m, task_result *out,
+                            mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    answer a = {.mem = &out->mem, .x = mt_arena_f64(&out->mem, (size_t)p->n, 1)};
+    double *const t = mt_arena_f64(&out->mem, (size_t)p->n + 1, 1);
+    const double size = known->size + (mt_relaxation_size(p, m, known->to) -
+                                       mt_relaxation_size(p, known, known->to));
+    bool again = false;
+    MT_TRY(mt_arena_check(&out->mem, err));
+    if (!(size > LEAST)) {
+        return MT_OK;
+    }
+    coordinates_of(p, known, size, t);
+    MT_TRY(keep_confirmed_move(w->c, m, size, t, &a, &again, err));
+    out->evals += a.evals;
+    m->least_change = m->found && known->least_change;
+    return MT_OK;
+}
+
+/* Searches move k for the study's rows, which w is set to. */
+static mt_status search_useful(const job *j, mt_subproblem *c, mt_workspace *w, int k,
+                               task_result *out, mt_err *err)
+{
+    mt_move *const m = &j->moves->items[k];
+    const mt_move *const known = j->sizes ? find_known_move(j->known, m) : NULL;
+    bool useless = false;
+    if (known != NULL && is_the_difference(j, m)) {
+        MT_TRY(take_known(w, known, m, out, err));
+    }
+    if (!m->found) {
+        MT_TRY(is_useless(j, c, m, &out->mem, &useless, err));
+    }
+    if (m->found || useless) {
+        return MT_OK;
+    }
+    return w->p->n_avoidances > 0 ? search_placements(j, c, w, k, out, err)
+                                  : search_in(j, c, w, m, j->near, out, err);
+}
+
+/* The design of least change of the least move, of which only how far is known. */
+static mt_status search_least_of_all(job *j, mt_move *m, mt_err *err)
+{
+    mt_workspace *const w = j->workers[0];
+    task_result *const out = &j->results[m->order];
+    const mt_problem *const p = w->p;
+    relaxed r = {.w = w, .move = m};
+    answer a = {.mem = &out->mem, .x = mt_arena_f64(&out->mem, (size_t)p->n, 1)};
+    double *const found = mt_arena_f64(&out->mem, (size_t)p->n + 1, 1);
+    double *const hint = mt_arena_f64(&out->mem, (size_t)p->n + 1, 1);
+    const double *least = NULL;
+    mt_subproblem c;
+    bool useful = false;
+    bool again = false;
+    MT_TRY(mt_arena_check(&out->mem, err));
+    mt_status rc = relaxation_subproblem(j->c, m, w, &out->mem, &c, &useful, err);
+    if (rc == MT_OK && useful) {
+        mt_nlp_options opt = mt_nlp_options_default();
+        opt.seed = c.search.seed;
+        opt.max_solutions = 1;
+        opt.least_change = false;
+        coordinates_of(p, m, m->size, found);
+        const mt_nlp nlp = nlp_of(&r, &c, NULL, hint);
+        rc = search_least_change(nlp, opt, found, out->one, LONG_MAX, out, &least, err);
+    }
+    rc = rc == MT_OK && least != NULL
+             ? keep_confirmed_move(&c, m, m->size, least, &a, &again, err)
+             : rc;
+    out->evals += a.evals;
+    m->least_change = true;
+    mt_workspace_back(w, j->c);
+    return rc;
+}
+
 static mt_status search_move(void *context, int worker, int k, mt_task_path *own, mt_err *err)
 {
     const job *const j = context;
@@ -789,13 +959,7 @@ static mt_status search_move(void *context, int worker, int k, mt_task_path *own
     w->task_path = own;
     mt_status rc = relaxation_subproblem(j->c, m, w, &out->mem, &c, &useful, err);
     if (rc == MT_OK && useful) {
-        bool useless = false;
-        rc = is_useless(j, &c, m, &out->mem, &useless, err);
-        useful = !useless;
-    }
-    if (rc == MT_OK && useful) {
-        rc = w->p->n_avoidances > 0 ? search_placements(j, &c, w, k, out, err)
-                                    : search_in(j, &c, w, m, j->near, out, err);
+        rc = search_useful(j, &c, w, k, out, err);
     }
     w->task_path = before;
     mt_workspace_back(w, j->c);
@@ -815,8 +979,9 @@ static mt_status look_around(job *j, const mt_mode_placement_result *placements,
 
 mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
                               const mt_nlp_result *search,
-                              const mt_mode_placement_result *placements, mt_arena *mem,
-                              mt_moves *out, mt_err *err)
+                              const mt_mode_placement_result *placements,
+                              const mt_moves_known *known, mt_arena *mem, mt_moves *out,
+                              mt_err *err)
 {
     const mt_subproblem *const c = workers[0]->c;
     MT_TRY(relaxation_moves(c, mem, out, err));
@@ -826,6 +991,9 @@ mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
              .c = c,
              .moves = out,
              .near = search->n_solutions > 0 ? search->solutions[0].t : NULL,
+             .known = known,
+             .sizes = c->p->study->examined && most <= 0 && c->n_avoidances == 0 &&
+                      !mt_tolerance_is_sampled(c),
              .budget = most > 0 && out->n > 0 ? left / out->n : LONG_MAX,
              .results = mt_arena_alloc(mem, (size_t)out->n, sizeof *j.results)};
     const int n = out->n;
@@ -841,14 +1009,19 @@ mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
         j.budget = most > 0 ? (left - out->evals) / out->n : LONG_MAX;
     }
     const mt_tasks tasks = {n, search_move, NULL, &j, "changes of the question"};
-    const mt_status rc = mt_workers_run(n_workers, workers[0]->task_path, &tasks, err);
+    mt_status rc = mt_workers_run(n_workers, workers[0]->task_path, &tasks, err);
+    relaxation_rank(out);
+    for (int k = 0; k < n; k++) {
+        out->stopped = out->stopped || j.results[k].stopped;
+    }
+    if (rc == MT_OK && j.sizes && out->n > 0 && !out->items[0].least_change && !out->stopped) {
+        rc = search_least_of_all(&j, &out->items[0], err);
+    }
     for (int k = 0; k < n; k++) {
         out->evals += j.results[k].evals;
         out->starts += j.results[k].starts;
-        out->stopped = out->stopped || j.results[k].stopped;
         mt_arena_free(&j.results[k].mem);
     }
-    relaxation_rank(out);
     return rc;
 }
 
@@ -1030,8 +1203,9 @@ static mt_status relaxation_near(mt_workspace *const *workers, int n_workers,
     for (int i = 1; i < n_workers && rc == MT_OK; i++) {
         rc = mt_workspace_use(workers[i], &closed, err);
     }
-    rc = rc == MT_OK ? mt_relaxation_solve(workers, n_workers, &from, NULL, mem, &found, err)
-                     : rc;
+    rc = rc == MT_OK
+             ? mt_relaxation_solve(workers, n_workers, &from, NULL, NULL, mem, &found, err)
+             : rc;
     for (int i = 0; i < n_workers; i++) {
         mt_workspace_back(workers[i], whole);
     }

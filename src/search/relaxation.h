@@ -41,10 +41,11 @@ typedef struct mt_move {
     bool found;
     double from;
     double to;
-    double size;   /* |s|, which ranks moves */
-    double change; /* half of the squared total change of x */
-    double *x;     /* [n] design of least change that meets everything after the move */
-    int order;     /* position in the order of the study */
+    double size;       /* |s|, which ranks moves */
+    double change;     /* half of the squared total change of x */
+    double *x;         /* [n] design of least change that meets everything after the move */
+    bool least_change; /* of a point of a trade study: x is that, else any design that does */
+    int order;         /* position in the order of the study */
 } mt_move;
 
 typedef struct mt_moves {
@@ -56,6 +57,16 @@ typedef struct mt_moves {
     bool stopped;         /* interrupted: some moves were not tried */
 } mt_moves;
 
+/* Moves of a study that differs in one number. */
+typedef struct mt_moves_known {
+    const mt_moves *moves;
+    const mt_vary *number; /* that one */
+} mt_moves_known;
+
+/* out: the moves in mem. Fails: MT_E_MEMORY. */
+mt_status mt_moves_copy(const mt_moves *from, int n_variables, mt_arena *mem, mt_moves *out,
+                        mt_err *err);
+
 /**
  * Tries all moves.
  * @param[in]  workers     [n_workers] set to one subproblem without a placement and with all
@@ -63,15 +74,21 @@ typedef struct mt_moves {
  * @param[in]  search      result of the search (starts from its compromise, where it has one)
  *   and evaluations used of the study's budget
  * @param[in]  placements  its mode placements, or NULL
+ * @param[in]  known       moves of a study that differs by little in one number, or NULL: where
+ *   there are no bands, a move that it has, too, is searched from its design, and from other
+ *   starts only where that search does not end at a local minimum; where that one number moves,
+ *   both have the same designs, and nothing is searched
  * @param[out] out         lists in mem
- * Every reported move is confirmed by a new workspace at its design. Deterministic for any
+ * Every reported move is confirmed by a new workspace at its design. Of a point of a trade
+ * study, of which the least move is told, the others' designs may be any. Deterministic for any
  * number of workers. Cost: some 1000 evaluations for each move, at most a third of them for its
  * design. Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
                               const mt_nlp_result *search,
-                              const mt_mode_placement_result *placements, mt_arena *mem,
-                              mt_moves *out, mt_err *err);
+                              const mt_mode_placement_result *placements,
+                              const mt_moves_known *known, mt_arena *mem, mt_moves *out,
+                              mt_err *err);
 
 /* mt_relaxation_solve for a study with catalogues. Without continuous
  * variables all combinations are evaluated (short_of_budget where these are too many). */

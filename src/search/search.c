@@ -322,7 +322,6 @@ static mt_nlp_options options_of(const mt_subproblem *c)
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = c->search.seed;
     opt.starts = c->search.starts > 0 ? c->search.starts : c->starts;
-    opt.agree = c->agree;
     opt.any_best = c->as_found;
     opt.max_evals = c->search.max_evaluations;
     opt.least_change = c->stages[c->stage].type == MT_OBJECTIVE_CHANGE;
@@ -362,11 +361,14 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, const 
     /* who asks for more than one design wants other compromises, too */
     if (c->p->n_avoidances == 0 && c->search.starts <= 0 && c->p->study->recommendations == 1 &&
         !mt_study_has_catalogues(c->p->study)) {
-        opt.prove_none = prove_none;
+        opt.none = c->search.impossible;
+        asked.boxes = opt.none ? 1 : 0; /* of that other question: more than none */
+        opt.prove_none = opt.none ? NULL : prove_none;
         opt.prove_context = &asked;
     }
     /* roots are all met twice, whatever they cost */
     opt.settles = c->search.settles && c->rows.eq.n < c->p->n;
+    opt.agree = from == NULL && (opt.settles || c->best_alone) ? c->search.agree : 0;
     if (from != NULL) {
         opt.starts = 1;
         nlp.origin = from;

@@ -32,6 +32,12 @@ typedef struct mt_search {
     /* where starts is 0: starts end where those so far leave little hope of another design. Set
      * by a trade study, which also starts from neighbouring points */
     bool settles;
+    /* starts end, too, where so many, among them a caller's, meet at one design (at equally
+     * good ones where any of these will do); 0: they do not. Set by the caller that answers, at
+     * a point of a trade study beside one that is answered, and for combinations */
+    int agree;
+    /* no design meets all goals: proven for a question that asks for less. Set as `agree` */
+    bool impossible;
     long max_evaluations; /* evaluations of the whole answer at most; 0: no limit */
     /* modal solutions of the whole answer at most; 0: no limit. The caller that answers
      * converts it to evaluations and puts them into max_evaluations */

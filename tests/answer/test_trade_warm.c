@@ -107,5 +107,58 @@ static void trade__starts_of_a_point_end_where_all_agree(mt_test *t)
     CHECK_NEAR(t, change[0], change[1], 1e-9);
 }
 
+/* Points of a large grid begin where the one before them ended, and those that ask for more
+ * than one without a design are not proven again: status, sentence and objective are those of
+ * the point's own study, with fewer evaluations. */
+static void trade__points_in_a_row_are_studies_of_their_own(mt_test *t)
+{
+#define ROW                                                                                  \
+    "'objective': {'minimise': 'change'}, 'recommendations': 1, 'variables': [{'parameter'"  \
+    ": 'k1', 'lower': 0.5, 'upper': 2}, {'parameter': 'k2', 'lower': 0.5, 'upper': 2}], "    \
+    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': %.17g}, {'type': 'frequency'" \
+    ", 'mode': 2, 'at_most_hz': 0.25}]"
+    enum { POINTS = 136, STEP = 9, ROOM = 8192 };
+    char text[ROOM];
+    study_case all;
+    long own = 0;
+    int n_own = 0;
+    int at = snprintf(text, sizeof text,
+                      ROW ", 'trade': {'vary': [{'goal': 0, 'member': "
+                          "'at_least_hz', 'values': [",
+                      0.1);
+    for (int k = 0; k < POINTS; k++) {
+        at += snprintf(text + at, sizeof text - (size_t)at, "%s%.17g", k > 0 ? ", " : "",
+                       0.095 + (0.0002 * k));
+    }
+    (void)snprintf(text + at, sizeof text - (size_t)at, "]}]}");
+    if (!study_solve(t, MODEL, text, &all) ||
+        !CHECK_INT(t, all.result->trade->n_points, POINTS)) {
+        study_free(&all);
+        return;
+    }
+    int statuses[2] = {0};
+    for (int k = STEP - 1; k < POINTS; k += STEP) {
+        const mt_trade_point *const point = &all.result->trade->points[k];
+        study_case one;
+        mt_test_row(t, "point %d", k);
+        (void)snprintf(text, sizeof text, ROW, point->values[0]);
+        if (study_solve(t, MODEL, text, &one) && CHECK(t, one.result->n_recommendations > 0)) {
+            const mt_recommendation *const best = &one.result->recommendations[0];
+            CHECK_INT(t, point->status, one.result->status);
+            CHECK_STR(t, point->status_text, one.result->status_text);
+            CHECK_NEAR(t, point->best.change, best->change, 1e-6);
+            CHECK(t, point->best.feasible == best->feasible);
+            statuses[best->feasible ? 1 : 0]++;
+            own += one.result->run.evaluations;
+            n_own++;
+        }
+        study_free(&one);
+    }
+    CHECK(t, statuses[0] >= 3 && statuses[1] >= 3);
+    CHECK(t, 2 * all.result->run.spent.trade * n_own < own * POINTS);
+    study_free(&all);
+}
+
 MT_TEST_MAIN(MT_TEST(hint__is_one_more_start), MT_TEST(trade__a_neighbour_improves_a_point),
-             MT_TEST(trade__starts_of_a_point_end_where_all_agree))
+             MT_TEST(trade__starts_of_a_point_end_where_all_agree),
+             MT_TEST(trade__points_in_a_row_are_studies_of_their_own))
