@@ -629,6 +629,16 @@ static int neighbour(const trade *t, int k, int way)
     return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
 }
 
+/* Best design of neighbour `way` of point k in the first pass; NULL where there is none, or k
+ * was searched from it. */
+static const double *neighbour_design(const trade *t, int k, int way)
+{
+    const int other = neighbour(t, k, way);
+    const int before = 2 * (t->study->trade.n_vary - 1);
+    const bool begun = way == before && (k % t->line) % t->stretch > 0;
+    return other < 0 || begun ? NULL : t->points[other].near;
+}
+
 /* True where a is the better answer of one point, by more than searches differ. Among feasible
  * designs the first objective decides. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
@@ -676,8 +686,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
     const double *tried[WAYS] = {NULL};
     MT_TRY(values_of(best != NULL && best->feasible ? best : NULL, mem, &best_x, err));
     for (int way = 0; way < WAYS; way++) {
-        const int other = neighbour(t, k, way);
-        const double *const x = other < 0 ? NULL : t->points[other].near;
+        const double *const x = neighbour_design(t, k, way);
         bool gain = false;
         const long left = mt_question_left(p->q) - LOOKS;
         if (x == NULL || stopped(t) || left < WARM_LEAST || is_tried(p, way, tried, x)) {
@@ -709,8 +718,13 @@ static mt_status solve_warm(void *context, int worker, int task, mt_task_path *o
     point *const p = &t->points[k];
     mt_workspace *w = NULL;
     mt_arena mem;
+    bool any = false;
     (void)worker;
-    if (stopped(t) || p->first == NULL) {
+    for (int way = 0; way < WAYS; way++) {
+        any = any || neighbour_design(t, k, way) != NULL;
+    }
+    if (stopped(t) || p->first == NULL || !any) {
+        forget(p);
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
