@@ -5,8 +5,8 @@
 #include "base/run.h"
 #include "base/workers.h"
 #include "problem/problem.h"
-#include "study/study.h"
 #include "search/relaxation.h"
+#include "study/study.h"
 
 /* Called before a proof that may take long, with the answer so far (status "interrupted"),
  * which the caller may keep in case the run is killed. */

@@ -11,7 +11,7 @@
 #include "model/lint.h"
 #include "model/setting.h"
 #include "model/values.h"
-#include "result/model.h"
+#include "result/folder.h"
 
 static mt_status refuse_unknown_name(const char *what, const char *name,
                                      const char *const *names, int n, mt_err *err)
@@ -357,7 +357,7 @@ mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem
 }
 
 /* --model takes a file as it is, with a warning where it is not what was solved; without it the
- * model is looked for (result/model.h). */
+ * model is looked for (result/folder.h). */
 
 mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
                         char **path, mt_err *err)
