@@ -6,7 +6,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/damping.h"
-#include "analysis/lowest.h"
+#include "analysis/lowest_damped.h"
 #include "answer/warnings.h"
 #include "base/format.h"
 #include "cli/cli.h"
@@ -169,8 +169,9 @@ static void damped_print(const mt_damped_modes *d, int count, mt_text *out)
     }
 }
 
-/* Member "damped_modes". */
-static void damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
+/* Member "damped_modes"; error: of |s| as a part of it, or NULL. */
+static void damped_json(const mt_damped_modes *d, const double *error, int count,
+                        mt_json_writer *w)
 {
     mt_json_open(w, "damped_modes", '[');
     for (int i = 0; i < d->count; i++) {
@@ -187,6 +188,12 @@ static void damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
         mt_json_put_string(w, "kind", kind_name(d->kind[i]));
         mt_json_put_number(w, "natural_frequency_hz",
                            decided_value(d, i, mt_damped_natural_hz(d, i)));
+        if (error != NULL) {
+            mt_json_put_number(w, "natural_frequency_error_hz",
+                               error[i] * mt_damped_natural_hz(d, i));
+        } else {
+            mt_json_put_null(w, "natural_frequency_error_hz");
+        }
         mt_json_put_number(w, "damped_frequency_hz", decided_value(d, i, damped_hz(d, i)));
         mt_json_put_number(w, "damping_ratio_percent",
                            decided_value(d, i, 100.0 * mt_damped_ratio(d, i)));
@@ -366,6 +373,7 @@ typedef struct view {
     bool asked;         /* by --count */
     bool with_damping;
     const mt_damped_modes *damped;
+    mt_lowest_damped few; /* of a large mechanism: `damped` is of these */
     mt_warning_list warning_list;
 } view;
 
@@ -461,7 +469,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     }
     mt_json_close(w);
     if (v->with_damping) {
-        damped_json(v->damped, v->count, w);
+        damped_json(v->damped, v->few.error, v->count, w);
     }
     if (v->a != NULL) {
         MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
@@ -636,6 +644,22 @@ static void write_solution_notes(const view *v, mt_text *out)
     }
 }
 
+/* What the damped modes of a large mechanism were found from. */
+static void write_few_damped(const mt_lowest_damped *few, mt_text *out)
+{
+    const mt_damped_modes *const d = &few->modes;
+    double most = 0.0;
+    for (int i = 0; i < d->count; i++) {
+        most = fmax(most, few->error[i]);
+    }
+    mt_text_addf(out,
+                 "  The damped modes into which the lowest undamped ones turn, by these and %d "
+                 "shape%s that damping adds; errors below %.0e of a root.%s\n",
+                 few->shapes, few->shapes == 1 ? "" : "s",
+                 pow(10.0, ceil(log10(fmax(most, DBL_EPSILON)))),
+                 " Real roots above the last one are not sought (--count all: all roots).");
+}
+
 static void text_view(const view *v, mt_text *out)
 {
     mt_table t = table_new(false, any_rough(v), 0, NULL);
@@ -650,6 +674,9 @@ static void text_view(const view *v, mt_text *out)
     }
     if (v->with_damping) {
         damped_print(v->damped, v->count, out);
+    }
+    if (v->with_damping && v->l != NULL) {
+        write_few_damped(&v->few, out);
     }
     write_others(v, out);
     mt_text_add(out, "\n");
@@ -686,20 +713,56 @@ static mt_status csv_view(sink *to, const view *v)
     return MT_OK;
 }
 
-/* Find the lowest modes only, where these are requested and there is a fast method. */
-static mt_status solve_view_modes(const mt_args *args, view *v, mt_err *err)
+/* Undamped modes that are sought beyond those asked for, where the damped ones are to be found
+ * from them, by attempt: damping reorders roots, and takes some from those that oscillate. */
+static const int DAMPED_BESIDES[] = {8, 60};
+
+/* The lowest damped modes; *is false: they need all modes, for the reason in why. */
+static mt_status solve_few_damped(view *v, mt_arena *mem, bool *is, char *why, mt_err *err)
 {
     const mt_loaded_model *const s = v->s;
-    const mt_lowest_want want = {.count = args->given[MT_OPT_DAMPED] ? 0 : v->count,
-                                 .shapes = args->given[MT_OPT_SHAPES]};
-    MT_TRY(mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
+    for (int i = 0; i < MT_COUNT(DAMPED_BESIDES) && !(*is && v->few.enough); i++) {
+        const mt_lowest_want want = {.count = v->count + DAMPED_BESIDES[i], .shapes = true};
+        mt_lowest_delete(v->l);
+        v->l = NULL;
+        *is = false;
+        MT_TRY(
+            mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
+        if (v->l == NULL) {
+            return MT_OK;
+        }
+        const mt_status rc = mt_lowest_damped_modes(v->l, v->count, mem, &v->few, is, why, err);
+        if (rc != MT_OK) {
+            return mt_err_in(err, rc, "%s: configuration \"%s\"", s->path,
+                             mt_loaded_model_configuration(s, v->c));
+        }
+    }
+    v->damped = &v->few.modes;
+    return MT_OK;
+}
+
+/* Find the lowest modes only, where these are requested and there is a fast method. */
+static mt_status solve_view_modes(const mt_args *args, view *v, mt_arena *mem, mt_err *err)
+{
+    const mt_loaded_model *const s = v->s;
+    const mt_lowest_want want = {.count = v->count, .shapes = args->given[MT_OPT_SHAPES]};
+    char why[MT_LOWEST_DAMPED_WHY] = "";
+    bool is = true;
+    MT_TRY(
+        v->with_damping && v->count > 0
+            ? solve_few_damped(v, mem, &is, why, err)
+            : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
+    if (v->l != NULL && !is) {
+        mt_lowest_delete(v->l);
+        v->l = NULL;
+        MT_TRY(mt_loaded_model_admit_dense(s, v->c, why, err));
+    }
     if (v->l != NULL) {
         v->m = &v->l->found.modes;
         return mt_warnings_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->warning_list,
                                      err);
     }
-    /* damped modes are sought among all others */
-    MT_TRY(mt_loaded_model_analyse(s, v->c, want.count, &v->a, err));
+    MT_TRY(mt_loaded_model_analyse(s, v->c, v->with_damping ? 0 : want.count, &v->a, err));
     v->m = &v->a->modes;
     return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list, err);
 }
@@ -708,12 +771,16 @@ static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, in
                                           mt_err *err)
 {
     const bool asked = to->args->given[MT_OPT_COUNT];
-    view v = {.s = s, .c = c, .count = asked ? to->args->count : DEFAULT_MODES, .asked = asked};
+    view v = {.s = s,
+              .c = c,
+              .count = asked ? to->args->count : DEFAULT_MODES,
+              .asked = asked,
+              .with_damping = to->args->given[MT_OPT_DAMPED]};
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
     v.warning_list = mt_warning_list_default(&mem);
     to->run.progress = mt_watch_begin(to->args, 0, "modes");
-    rc = rc == MT_OK ? solve_view_modes(to->args, &v, err) : rc;
+    rc = rc == MT_OK ? solve_view_modes(to->args, &v, &mem, err) : rc;
     to->run.progress = NULL;
     mt_watch_end(rc == MT_OK);
     if (rc != MT_OK || v.m == NULL) {
@@ -724,8 +791,7 @@ static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, in
         rc = v.l != NULL ? shapes_of_lowest(v.l, v.shown, &mem, &v.shapes, err)
                          : shapes_of(v.a, v.shown, &mem, &v.shapes, err);
     }
-    if (rc == MT_OK && to->args->given[MT_OPT_DAMPED]) {
-        v.with_damping = true;
+    if (rc == MT_OK && v.with_damping && v.l == NULL) {
         rc = mt_analysis_damped(v.a, &v.damped, err);
     }
     if (rc != MT_OK) {

@@ -219,7 +219,7 @@ mt_status mt_loaded_model_lowest(const mt_loaded_model *s, int c, int n_inputs,
                                  mt_lowest **out, mt_err *err)
 {
     const double bodies = mt_lowest_bodies(s->model, c);
-    char why[MT_LOWEST_WHY + 50] = "ask for the lowest modes only, without dampers (--count)";
+    char why[MT_LOWEST_WHY + 50] = "ask for the lowest modes only (--count)";
     *out = NULL;
     if (want.count > 0 && want.count <= bodies / 2 && bodies >= MT_LOWEST_BODIES) {
         const mt_system_def def = mt_loaded_model_system(s, c, n_inputs, inputs, at);

@@ -59,6 +59,25 @@ class Large(CliTest):
         table = self.expect(0, "modes", self.model_of("beam", TREE), "--count", "3", "--format", "csv").stdout.splitlines()
         self.assertEqual(len(table), 4)
 
+    def test_damped_modes_need_no_others(self):
+        """A cantilever of 6000 elements with damping beta K has the damping ratios beta omega/2; with a damper in its root, on which nothing else depends, the
+        roots of 120 elements are those of all modes."""
+        model = {**large.link(TREE), "damping": {"stiffness_s": 1e-3}}
+        for mode, damped in zip(*(self.modes(self.write("proportional.json", json.dumps(model)), "--count", "4", "--damped")[k] for k in ("modes", "damped_modes"))):
+            self.assertAlmostEqual(damped["natural_frequency_hz"] / mode["frequency_hz"], 1, delta=1e-12)
+            self.assertAlmostEqual(damped["damping_ratio_percent"] / (100e-3 * math.pi * mode["frequency_hz"]), 1, delta=1e-9)
+        model = {**large.link(120), "dampers": [{"name": "foot", "type": "torsion", "joint": "root", "damping_n_m_s_per_rad": 4.0}]}
+        path = self.write("root.json", json.dumps(model))
+        whole, few = (self.modes(path, "--count", count, "--damped") for count in ("all", "5"))
+        self.assertEqual((whole["method"], few["method"], len(few["damped_modes"])), ("dense", "tree", 5))
+        for one, other in zip(few["damped_modes"], whole["damped_modes"]):
+            for name in ("natural_frequency_hz", "damping_ratio_percent"):
+                self.assertAlmostEqual(one[name] / other[name], 1, delta=1e-9)
+            self.assertLess(one["natural_frequency_error_hz"], 1e-9 * one["natural_frequency_hz"])
+            self.assertIsNone(other["natural_frequency_error_hz"])
+        said = self.expect(0, "modes", path, "--count", "5", "--damped").stdout
+        self.assertRegex(said, r"by these and \d+ shapes that damping adds; errors below 1e-\d\d of a root\. Real roots above the last one are not sought")
+
     def test_free_ones_have_rigid_body_modes(self):
         model = large.link(150)
         del model["joints"], model["springs"]
@@ -71,8 +90,8 @@ class Large(CliTest):
 
     def test_what_is_too_large_is_refused_with_the_reason(self):
         model = large.link(6000)
-        for options, said in ((("--count", "all"), "ask for the lowest modes only, without dampers \\(--count\\)"),
-                              (("--count", "3", "--damped"), "ask for the lowest modes only"),):
+        for options, said in ((("--count", "all"), "ask for the lowest modes only \\(--count\\)"),
+                              (("--count", "all", "--damped"), "ask for the lowest modes only \\(--count\\)"),):
             done = self.expect(2, "modes", self.write("large.json", json.dumps(model)), *options)
             self.assertRegex(done.stderr, "6001 bodies are too many for dense matrices; " + said)
         model["parameters"] = {"m": {"value": 1}}

@@ -10,19 +10,10 @@
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
-#include "mt_writer.h"
 #include "response/response.h"
-#include "support/mt_random.h"
+#include "support/random_tree.h"
 
-enum {
-    TEXT = 100000,
-    ROUNDS = 64,
-    BODIES = 50,
-    FEW = 7,
-    FREQUENCIES = 8,
-    OUTPUTS = 6,
-    PAIRS = 2 * OUTPUTS
-};
+enum { ROUNDS = 64, FEW = 7, FREQUENCIES = 8, OUTPUTS = 6, PAIRS = 2 * OUTPUTS };
 
 /* What the medians over a kind are, of the largest value of each response: far below the first
  * of the modes that are left out. */
@@ -37,180 +28,6 @@ static const double RATIO_TOLD = 0.1;
 static const int MOTION[OUTPUTS] = {0, 2, 1, 1, 0, 0};
 static const double SCALE[OUTPUTS] = {1.0, 1.0, 1.0, 1.0, 5e3, 5e3};
 static const double DENSE_ULPS = 2e5;
-
-typedef enum kind {
-    UNDAMPED,
-    PROPORTIONAL,
-    RATIOS,
-    RATIO,
-    DAMPERS,
-    LOSS,
-    LOSSES,
-    DAMPERS_AND_LOSSES,
-    KINDS
-} kind;
-
-typedef struct tree {
-    mt_random g;
-    int axes;
-    bool free;
-    bool hung;
-    bool looped;
-    kind kind;
-    double at[BODIES][3];
-    int before[BODIES];
-} tree;
-
-static void add_point(mt_writer *w, const tree *r, const double *x)
-{
-    mt_write(w, "[%.17g, %.17g", x[0], x[1]);
-    if (r->axes == 3) {
-        mt_write(w, ", %.17g", x[2]);
-    }
-    mt_write(w, "]");
-}
-
-/* Body i and what it hangs on. */
-static void place_body(tree *r, int i)
-{
-    const int back = i > 0 && !r->hung ? mt_random_int(&r->g, i < 4 ? i : 4) : 0;
-    r->before[i] = i - 1 - back;
-    for (int k = 0; k < 3; k++) {
-        const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
-        const double step = r->hung ? (k == 1 ? -0.3 : 0.0) : mt_random_in(&r->g, -0.3, 0.3);
-        r->at[i][k] = k < r->axes ? from + step : 0.0;
-    }
-}
-
-static void add_bodies(mt_writer *w, tree *r)
-{
-    mt_write(w, "\"bodies\": [");
-    for (int i = 0; i < BODIES; i++) {
-        place_body(r, i);
-        mt_write(w,
-                 "%s{ \"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i > 0 ? ", " : "",
-                 i, mt_random_in(&r->g, 0.5, 2.0));
-        add_point(w, r, r->at[i]);
-        if (r->axes == 2) {
-            mt_write(w, ", \"inertia_kg_m2\": %.17g }", mt_random_in(&r->g, 0.01, 0.02));
-        } else {
-            mt_write(w, ", \"inertia_kg_m2\": [%.17g, 0.014, 0.013, 0, 0, 0] }",
-                     mt_random_in(&r->g, 0.01, 0.016));
-        }
-    }
-    mt_write(w, "], ");
-}
-
-static void add_joints(mt_writer *w, tree *r)
-{
-    bool first = true;
-    mt_write(w, "\"joints\": [");
-    for (int i = r->free ? 1 : 0; i < BODIES; i++) {
-        double middle[3] = {0.0};
-        for (int k = 0; k < 3; k++) {
-            const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
-            middle[k] = 0.5 * (from + r->at[i][k]);
-        }
-        mt_write(w, "%s{ \"name\": \"j%d\", \"type\": \"revolute\", \"bodies\": [",
-                 first ? "" : ", ", i);
-        if (r->before[i] < 0) {
-            mt_write(w, "\"ground\"");
-        } else {
-            mt_write(w, "\"b%d\"", r->before[i]);
-        }
-        mt_write(w, ", \"b%d\"], \"at\": ", i);
-        add_point(w, r, middle);
-        if (r->axes == 3) {
-            mt_write(w, ", \"axis\": [%.17g, %.17g, 1]", mt_random_in(&r->g, -1.0, 1.0),
-                     mt_random_in(&r->g, -1.0, 1.0));
-        }
-        mt_write(w, " }");
-        first = false;
-    }
-    if (r->looped && !r->hung) {
-        mt_write(
-            w, ", { \"name\": \"bar\", \"type\": \"distance\", \"bodies\": [\"b5\", \"b30\"], "
-               "\"at\": [");
-        add_point(w, r, r->at[5]);
-        mt_write(w, ", ");
-        add_point(w, r, r->at[30]);
-        mt_write(w, "] }");
-    }
-    mt_write(w, "], ");
-}
-
-static bool is_damped(const tree *r)
-{
-    return r->kind == DAMPERS || r->kind == DAMPERS_AND_LOSSES;
-}
-
-static void add_springs(mt_writer *w, tree *r)
-{
-    const bool some = r->kind == LOSSES || r->kind == DAMPERS_AND_LOSSES;
-    const bool dampers = is_damped(r);
-    bool first = true;
-    mt_write(w, "\"springs\": [");
-    for (int i = r->free ? 1 : 0; i < BODIES; i++) {
-        mt_write(w,
-                 "%s{ \"name\": \"s%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
-                 "\"stiffness_n_m_per_rad\": %.17g",
-                 first ? "" : ", ", i, i, mt_random_in(&r->g, 500.0, 5000.0));
-        if (r->kind == LOSS || (some && i % 9 == 2)) {
-            mt_write(w, ", \"loss_factor\": %.17g", r->kind == LOSS ? 0.04 : 0.1);
-        }
-        mt_write(w, " }");
-        first = false;
-    }
-    if (r->looped) {
-        const double aside[] = {r->at[0][0] + 0.5, r->at[0][1], r->at[0][2]};
-        mt_write(w,
-                 ", { \"name\": \"tie\", \"type\": \"axial\", \"bodies\": [\"b0\", \"b%d\"], "
-                 "\"stiffness_n_per_m\": 3000, \"at\": [",
-                 BODIES - 1);
-        add_point(w, r, aside);
-        mt_write(w, ", ");
-        add_point(w, r, r->at[BODIES - 1]);
-        mt_write(w, "]%s }", r->kind == LOSS ? ", \"loss_factor\": 0.04" : "");
-    }
-    mt_write(w, "], ");
-    first = true;
-    for (int i = 1; i < BODIES && dampers; i += 8) {
-        mt_write(w,
-                 "%s{ \"name\": \"d%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
-                 "\"damping_n_m_s_per_rad\": %.17g }",
-                 first ? "\"dampers\": [" : ", ", i, i, mt_random_in(&r->g, 1.0, 20.0));
-        first = false;
-    }
-    mt_write(w, "%s", dampers ? "], " : "");
-}
-
-static void write_tree(tree *r, mt_writer *w)
-{
-    static const char *const DAMPING[KINDS] = {[PROPORTIONAL] =
-                                                   "\"mass_per_s\": 0.3, \"stiffness_s\": 1e-4",
-                                               [RATIOS] = "\"ratios\": [0.01, 0.03, 0.02]",
-                                               [RATIO] = "\"ratio\": 0.02"};
-    mt_write(w, "{ \"format\": \"modetune-model/1\", \"name\": \"t\", \"dimension\": %d, ",
-             r->axes);
-    add_bodies(w, r);
-    add_joints(w, r);
-    add_springs(w, r);
-    if (r->hung) {
-        mt_write(w, "\"gravity_m_per_s2\": [0, -9.81%s], ", r->axes == 3 ? ", 0" : "");
-    }
-    if (DAMPING[r->kind] != NULL) {
-        mt_write(w, "\"damping\": { %s }, ", DAMPING[r->kind]);
-    }
-    mt_write(w, "\"sensors\": [");
-    for (int k = 0; k < 2; k++) {
-        const int on = k == 0 ? BODIES - 1 : BODIES / 2;
-        mt_write(w, "%s{ \"name\": \"p%d\", \"on\": \"b%d\", \"at\": ", k > 0 ? ", " : "", k,
-                 on);
-        add_point(w, r, r->at[on]);
-        mt_write(w, ", \"directions\": [\"x\", \"y\"] }");
-    }
-    mt_write(w, "], \"configurations\": { \"c\": {} } }");
-}
 
 /* Errors of a kind, of all its mechanisms. */
 typedef struct seen {
@@ -279,12 +96,15 @@ static void compare(mt_test *t, mt_response *few, mt_response *all, double to, i
     }
 }
 
-static void try_tree(mt_test *t, tree *r, char *text)
+static void try_tree(mt_test *t, random_tree *r, char *text)
 {
     static const char *const IN[] = {"p0.x", "base.y"};
-    const char *const out[OUTPUTS] = {
-        "p0.x",          "p1.y:acceleration", "p1.y:relative_velocity",
-        "p0.y:velocity", "spring.s20",        is_damped(r) ? "damper.d1" : "spring.s30"};
+    const char *const out[OUTPUTS] = {"p0.x",
+                                      "p1.y:acceleration",
+                                      "p1.y:relative_velocity",
+                                      "p0.y:velocity",
+                                      "spring.s20",
+                                      random_tree_damped(r) ? "damper.d1" : "spring.s30"};
     const mt_response_request request = {
         .n_in = 2, .inputs = IN, .n_out = OUTPUTS, .outputs = out};
     const mt_lowest_want want = {.count = FEW, .shapes = true};
@@ -295,8 +115,8 @@ static void try_tree(mt_test *t, tree *r, char *text)
     mt_lowest *l = NULL;
     mt_response few = {.a = NULL};
     mt_response all = {.a = NULL};
-    mt_writer w = {text, TEXT, 0};
-    write_tree(r, &w);
+    mt_writer w = {text, TREE_TEXT, 0};
+    random_tree_write(r, &w);
     bool ok = mech_must(t, mech_parse(t, text), "c", "", &m) &&
               CHECK_INT(t, mt_analysis_solve(m.a, m.at, &opt, &m.err), MT_OK) &&
               CHECK_INT(t, mt_response_open(m.a, &request, &all, &m.err), MT_OK) &&
@@ -309,7 +129,7 @@ static void try_tree(mt_test *t, tree *r, char *text)
          CHECK(t, is);
     if (ok) {
         compare(t, &few, &all, to, r->free ? 1 : 2, &r->g,
-                &seen_of[r->looped ? 1 : 0][r->kind == RATIO ? 1 : 0]);
+                &seen_of[r->looped ? 1 : 0][r->kind == TREE_RATIO ? 1 : 0]);
     }
     mt_response_free(&few);
     mt_response_free(&all);
@@ -332,16 +152,16 @@ static void try_all(mt_test *t, bool looped)
 {
     const char *const more = getenv("MT_STRESS_ROUNDS");
     const int times = more == NULL ? 1 : (int)strtol(more, NULL, 10);
-    char *const text = malloc(TEXT);
+    char *const text = malloc(TREE_TEXT);
     seen *const own = seen_of[looped ? 1 : 0];
     for (int round = 0; round < times * ROUNDS && text != NULL; round++) {
-        tree r = {.g = mt_random_seed((uint64_t)round + 1),
-                  .kind = (kind)(round % KINDS),
-                  .looped = looped};
+        random_tree r = {.g = mt_random_seed((uint64_t)round + 1),
+                         .kind = (tree_damping)(round % TREE_KINDS),
+                         .looped = looped};
         r.axes = 2 + mt_random_int(&r.g, 2);
-        r.hung = round / KINDS % 4 == 3 && r.kind != LOSS;
+        r.hung = round / TREE_KINDS % 4 == 3 && r.kind != TREE_LOSS;
         r.axes = r.hung ? 2 : r.axes;
-        r.free = !r.hung && round / KINDS % 4 == 2;
+        r.free = !r.hung && round / TREE_KINDS % 4 == 2;
         mt_test_row(t, "%s %d", looped ? "loops" : "tree", round);
         own[0].n = round % ROUNDS == 0 ? 0 : own[0].n;
         own[1].n = round % ROUNDS == 0 ? 0 : own[1].n;
