@@ -278,15 +278,19 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
     return MT_OK;
 }
 
-/* Find the equilibrium under loads, without dense matrices; *is: found. */
+/* Find the equilibrium under loads, without dense matrices, once; *is: found. */
 static mt_status find_loaded_equilibrium(mt_lowest *l, bool *is, char *why, mt_err *err)
 {
     mt_data data;
     mt_placement at;
     mt_err own = {.code = MT_OK};
-    MT_TRY(mt_absolute_stand(l->sys, NULL, l->at, &data, &at, &l->mem, err));
-    const mt_status rc =
-        mt_position_solve(l->sys, &data, NULL, MT_POSITION_SPARSE, &l->mem, &l->position, &own);
+    mt_status rc = MT_E_EQUILIBRIUM;
+    if (!l->sought) {
+        l->sought = true;
+        MT_TRY(mt_absolute_stand(l->sys, NULL, l->at, &data, &at, &l->mem, err));
+        rc = mt_position_solve(l->sys, &data, NULL, MT_POSITION_SPARSE, &l->mem, &l->position,
+                               &own);
+    }
     *is = rc == MT_OK;
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
@@ -299,16 +303,23 @@ static mt_status find_loaded_equilibrium(mt_lowest *l, bool *is, char *why, mt_e
     return MT_OK;
 }
 
-/* In coordinates of the bodies, where those of a tree are not to be had. */
+/* In coordinates of the bodies, where those of a tree are not to be had. An equilibrium that
+ * was found for the tree is that of the bodies, too, where they do not rest as drawn. */
 static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
 {
     const size_t told = strlen(l->why);
     char why[WHY_SIZE] = "";
     bool is = false;
     bool rests = false;
+    const mt_system *const found = l->position.sys;
+    l->position.sys = NULL;
     MT_TRY(solve_bodies(l, want, NULL, &is, &rests, why, err));
     if (!is && !rests && l->sys->loaded && !l->sys->driven && !want.drawn) {
-        MT_TRY(find_loaded_equilibrium(l, &is, why, err));
+        l->position.sys = found;
+        is = found != NULL;
+        if (!is) {
+            MT_TRY(find_loaded_equilibrium(l, &is, why, err));
+        }
         if (is) {
             MT_TRY(solve_bodies(l, want, &l->position, &is, &rests, why, err));
         }
@@ -321,6 +332,29 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
     }
     (void)mt_snprintf(l->why + told, sizeof l->why - told, "; nor the sparse one, as %s", why);
     return MT_OK;
+}
+
+/* As a tree, in its drawn position or where it settles under its loads. */
+static mt_status make_tree(mt_lowest *l, mt_lowest_want want, mt_err *err)
+{
+    const mt_run *const run = l->sys->run;
+    bool moves = false;
+    bool told = mt_progress_begin(run->progress, "order of the bodies", 0);
+    const mt_status rc =
+        mt_tree_new(l->sys, l->at, NULL, &l->mem, &l->tree, &moves, l->why, err);
+    mt_progress_end(run->progress, told);
+    MT_TRY(rc);
+    if (l->tree != NULL || !moves || !l->sys->loaded || want.drawn) {
+        return MT_OK;
+    }
+    char why[WHY_SIZE] = "";
+    bool is = false;
+    told = mt_progress_begin(run->progress, "equilibrium", 0);
+    const mt_status found = find_loaded_equilibrium(l, &is, why, err);
+    mt_progress_end(run->progress, told);
+    MT_TRY(found);
+    return is ? mt_tree_new(l->sys, l->at, &l->position, &l->mem, &l->tree, &moves, why, err)
+              : MT_OK;
 }
 
 mt_status mt_lowest_new(const mt_system_def *def, mt_lowest_want want, mt_lowest **out,
@@ -338,12 +372,10 @@ mt_status mt_lowest_new(const mt_system_def *def, mt_lowest_want want, mt_lowest
     for (int i = 0; i < def->n_inputs && rc == MT_OK; i++) {
         l->at[i] = def->at[i];
     }
-    bool told = mt_progress_begin(run->progress, "equations", 0);
+    const bool told = mt_progress_begin(run->progress, "equations", 0);
     rc = rc == MT_OK ? mt_system_new_of(def, &l->sys, err) : rc;
     mt_progress_end(run->progress, told);
-    told = mt_progress_begin(run->progress, "order of the bodies", 0);
-    rc = rc == MT_OK ? mt_tree_new(l->sys, def->at, &l->mem, &l->tree, l->why, err) : rc;
-    mt_progress_end(run->progress, told);
+    rc = rc == MT_OK ? make_tree(l, want, err) : rc;
     rc = rc == MT_OK && l->tree != NULL ? solve_lowest_modes(l, want, err) : rc;
     rc = rc == MT_OK && l->tree == NULL && !want.tree ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {
@@ -515,6 +547,12 @@ static mt_status forms_of_tree(const mt_lowest *l, const pairs *p, double *form,
                                mt_arena *mem, mt_err *err)
 {
     motions m;
+    if (l->tree->settled_at != NULL) {
+        (void)mt_snprintf(why, MT_TREE_WHY,
+                          "the position where it settles moves with it, which is computed only "
+                          "for all modes");
+        return MT_OK;
+    }
     MT_TRY(make_motions_room(l, p->n, &m, mem, err));
     for (int i = 0; i < p->n; i++) {
         write_mode_of_unit_mass(l, l->tree->n_rigid + i, i, &m);

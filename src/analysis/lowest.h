@@ -37,6 +37,7 @@ typedef struct mt_lowest {
     mt_sparse_solver *solver;  /* for forces */
     double *work;              /* [coordinates] */
     mt_state position;         /* equilibrium position; sys NULL: the drawn position */
+    bool sought;               /* for that, found or not */
     double *mu;                /* constraint forces of the modes (mt_modal_sparse) */
     char why[MT_LOWEST_WHY];   /* why no method applies */
     double mass_kg;

@@ -423,11 +423,10 @@ typedef struct work {
     double *g;     /* [n] gradient */
     double *push;  /* [n] of all forces that meet at a body, at its coordinates */
     double *round; /* [n] of that, what rounding of the positions leaves open */
-    /* [nq] of a place where it settled: the motion to where the forces balance, what is open of
-     * that, and what was unbalanced before */
+    /* [nq] of a place where it settled: the motion to where the forces balance, and what is
+     * open of that */
     double *left;
     double *more;
-    double *unbalanced;
     entry *list; /* NULL: counted alone */
     size_t n;
 } work;
@@ -684,60 +683,19 @@ static mt_status sum_entries(work *w, mt_arena *mem, mt_absolute_load *out, mt_e
     return MT_OK;
 }
 
-/* c g, over the states. */
-static bool add_gradient(void *context, const int body[2], double c, double noise,
-                         const mt_jet *jet)
-{
-    const work *const w = context;
-    (void)noise;
-    for (int k = 0; k < L; k++) {
-        const int dof = mt_local_dof(w->o->sys, body, k);
-        if (dof >= 0) {
-            w->unbalanced[dof] += c * creal(jet->g[k]);
-        }
-    }
-    return true;
-}
-
-/*
- * Rounding of positions may change a stiff spring's force by far more than the rounding of the
- * forces themselves: Newton's step that was not taken leads to the balance. A second step
- * estimates the error of the first.
- */
-static mt_status find_motion_to_balance(work *w, mt_arena *scratch, mt_err *err)
-{
-    const mt_system *const sys = w->o->sys;
-    const mt_stage *const stage = &w->o->settled->equilibrium;
-    const size_t nq = (size_t)sys->nq;
-    w->left = mt_arena_f64(scratch, nq, 1);
-    w->more = mt_arena_f64(scratch, nq, 1);
-    w->unbalanced = mt_arena_f64(scratch, nq, 1);
-    double *const lambda = mt_arena_f64(scratch, (size_t)sys->n_constraints, 1);
-    mt_lagrangian l;
-    MT_TRY(mt_lagrangian_init_rows(&l, sys, scratch, err));
-    memcpy(w->left, stage->left.q, nq * sizeof *w->left);
-    (void)mt_forces_at(&w->data, &w->at, w->left, w->more, add_gradient, w);
-    mt_lagrangian_eval(&w->data, MT_ENERGY_NONE, NULL, &w->at, sys->n_constraints, NULL,
-                       MT_CURVATURE_NONE, &l);
-    memcpy(lambda, stage->lambda, (size_t)sys->n_constraints * sizeof *lambda);
-    mt_axpy(sys->n_constraints, 1.0, stage->left.lambda, lambda);
-    mt_lagrangian_pull(&l, sys->n_constraints, lambda, w->unbalanced);
-    for (size_t j = 0; j < nq; j++) {
-        w->unbalanced[j] = -w->unbalanced[j];
-    }
-    MT_TRY(mt_saddle_solve(&stage->solver.saddle, w->unbalanced, NULL, w->more, NULL, scratch,
-                           err));
-    mt_axpy(sys->nq, 1.0, w->more, w->left);
-    return MT_OK;
-}
-
 static mt_status open_at(work *w, const double *inputs, mt_arena *scratch, mt_err *err)
 {
     const mt_state *const settled = w->o->settled;
     w->push = mt_arena_f64(scratch, (size_t)w->o->n, 1);
     w->round = mt_arena_f64(scratch, (size_t)w->o->n, 1);
     MT_TRY(mt_absolute_stand(w->o->sys, settled, inputs, &w->data, &w->at, scratch, err));
-    return settled == NULL ? MT_OK : find_motion_to_balance(w, scratch, err);
+    if (settled == NULL) {
+        return MT_OK;
+    }
+    w->left = mt_arena_f64(scratch, (size_t)w->o->sys->nq, 1);
+    w->more = mt_arena_f64(scratch, (size_t)w->o->sys->nq, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    return mt_position_balance(settled, &w->data, w->left, w->more, scratch, err);
 }
 
 /* Add the forces of loads and springs. */

@@ -1190,6 +1190,55 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
     return mt_newton_gap(&check, &out->at, mem, &out->gap_m, err);
 }
 
+typedef struct balance {
+    const mt_system *sys;
+    double *unbalanced; /* [nq] */
+} balance;
+
+/* c g, over the states. */
+static bool add_gradient(void *context, const int body[2], double c, double noise,
+                         const mt_jet *jet)
+{
+    const balance *const b = context;
+    (void)noise;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(b->sys, body, k);
+        if (dof >= 0) {
+            b->unbalanced[dof] += c * creal(jet->g[k]);
+        }
+    }
+    return true;
+}
+
+mt_status mt_position_balance(const mt_state *p, const mt_data *data, double *left,
+                              double *open, mt_arena *scratch, mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    const mt_stage *const stage = &p->equilibrium;
+    const size_t nq = (size_t)sys->nq;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    balance b = {.sys = sys, .unbalanced = mt_arena_f64(scratch, nq, 1)};
+    double *const lambda = mt_arena_f64(scratch, (size_t)sys->n_constraints, 1);
+    mt_lagrangian l;
+    MT_TRY(mt_lagrangian_init_rows(&l, sys, scratch, err));
+    memcpy(left, stage->left.q, nq * sizeof *left);
+    memset(open, 0, nq * sizeof *open);
+    (void)mt_forces_at(data, &p->at, left, open, add_gradient, &b);
+    mt_lagrangian_eval(data, MT_ENERGY_NONE, NULL, &p->at, sys->n_constraints, NULL,
+                       MT_CURVATURE_NONE, &l);
+    memcpy(lambda, stage->lambda, (size_t)sys->n_constraints * sizeof *lambda);
+    mt_axpy(sys->n_constraints, 1.0, stage->left.lambda, lambda);
+    mt_lagrangian_pull(&l, sys->n_constraints, lambda, b.unbalanced);
+    for (size_t j = 0; j < nq; j++) {
+        b.unbalanced[j] = -b.unbalanced[j];
+    }
+    MT_TRY(
+        mt_saddle_solve(&stage->solver.saddle, b.unbalanced, NULL, open, NULL, scratch, err));
+    mt_axpy(sys->nq, 1.0, open, left);
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err)
 {
     const mt_system *const sys = p->sys;

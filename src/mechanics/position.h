@@ -112,6 +112,16 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
  * d_*, and data's rest values with their derivative. */
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err);
 
+/*
+ * Rounding of positions may change a stiff spring's force by far more than the rounding of the
+ * forces themselves: Newton's step that was not taken leads to the balance.
+ * left[nq] := that motion, open[nq] := the estimate of its error by a second step. data: of the
+ * inputs that p was solved with, rest values filled. After MT_POSITION_SPARSE. Scratch is
+ * returned. Fails: MT_E_MEMORY.
+ */
+mt_status mt_position_balance(const mt_state *p, const mt_data *data, double *left,
+                              double *open, mt_arena *scratch, mt_err *err);
+
 /* Close the first m constraints by the smallest steps from `at`, which is moved, to a gap of
  * `enough` model lengths; 0: to rounding. *closed false: the steps do not converge as at a
  * regular position, or joints contradict each other; `at` is then arbitrary. Adds to

@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "base/run.h"
 #include "linalg/dense.h"
+#include "mechanics/absolute.h"
 #include "mechanics/data.h"
 #include "mechanics/lagrangian.h"
 #include "mechanics/rows.h"
@@ -16,7 +17,14 @@
 typedef struct tree_maker {
     mt_tree *t;
     mt_data data;
-    mt_pose *pose; /* [bodies] drawn position */
+    mt_placement at;
+    mt_pose *pose; /* [bodies] of at */
+    /* [nq] of where it has settled: the motion from there to the balance, and what is open of
+     * it */
+    double *left;
+    double *open;
+    double *round; /* [n] forces on a body and its descendants that are open by that [N] */
+    bool moves;    /* not at rest, or not closed */
     char *why;
 } tree_maker;
 
@@ -498,6 +506,8 @@ static mt_status tree_masses(tree_maker *m, mt_arena *mem, bool *is_tree, mt_err
 /* Forces that do not balance, relative to all those that meet there: beyond rounding, the
  * drawing is not at rest. */
 static const double NOT_AT_REST = 1e-11;
+/* What Newton's method leaves unbalanced, in what rounding of the positions may be of it. */
+static const double ROOM = 8.0;
 
 typedef struct loading {
     tree_maker *m;
@@ -560,7 +570,6 @@ static bool add_curvature(const tree_maker *m, const int body[2], double c, cons
 static bool add_force(void *context, const int body[2], double c, double noise,
                       const mt_jet *jet)
 {
-    (void)noise; /* as drawn there is none */
     const loading *const l = context;
     const mt_tree *const t = l->m->t;
     for (int side = 0; side < 2; side++) {
@@ -569,8 +578,10 @@ static bool add_force(void *context, const int body[2], double c, double noise,
             if (is_free(t, body[side], k)) {
                 const double f = c * local_component(t, jet->g, side, k);
                 l->g[k + ((ptrdiff_t)t->s * at)] += f;
-                l->m->t->force[at] +=
-                    fabs(f) / (mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0);
+                const double g = fabs(local_component(t, jet->g, side, k));
+                const double arm = mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0;
+                l->m->t->force[at] += fabs(f) / arm;
+                l->m->round[at] += noise * g / arm;
             }
         }
     }
@@ -593,11 +604,19 @@ static bool is_at_rest(const loading *l, int i)
             most =
                 fmax(most, fabs(b[k]) * (mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0));
         }
-        if (!(fabs(power) <= NOT_AT_REST * most * l->m->t->force[i])) {
+        const double most_force = most * l->m->t->force[i];
+        if (!(fabs(power) <= (NOT_AT_REST * most_force) + (ROOM * most * l->m->round[i]))) {
             (void)mt_snprintf(l->m->why, MT_TREE_WHY,
-                              "\"%s\" is not drawn at rest under its load",
+                              t->settled_at == NULL
+                                  ? "\"%s\" is not drawn at rest under its load"
+                                  : "forces on \"%s\" cancel beyond rounding where it has "
+                                    "settled",
                               t->sys->bodies[t->body[i]].name);
+            l->m->moves = true;
             return false;
+        }
+        if (power != 0.0 && t->settled_at != NULL) {
+            l->m->t->unbalanced = fmax(l->m->t->unbalanced, fabs(power) / most_force);
         }
     }
     return true;
@@ -685,13 +704,34 @@ static mt_status balance_edge_joints(const loading *l, int i, mt_err *err)
     if (t->before[i] >= 0) {
         mt_tree_carry_back(t, i, g, l->g + ((ptrdiff_t)t->s * t->before[i]));
         l->m->t->force[t->before[i]] += l->m->t->force[i];
+        l->m->round[t->before[i]] += l->m->round[i];
     }
     return MT_OK;
 }
 
-/* Set the geometric stiffness of the loads, with the drawn position in equilibrium;
- * *is_tree false: not a tree, with the reason in why. Fails: MT_E_MEMORY, MT_E_NOT_SPD. */
-static mt_status tree_loads(tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err)
+/* The motion from where it has settled to the balance; sets how large it is. */
+static mt_status find_balance(tree_maker *m, mt_arena *scratch, mt_err *err)
+{
+    mt_tree *const t = m->t;
+    const mt_system *const sys = t->sys;
+    m->left = mt_arena_f64(scratch, (size_t)sys->nq, 1);
+    m->open = mt_arena_f64(scratch, (size_t)sys->nq, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_position_balance(t->settled_at, &m->data, m->left, m->open, scratch, err));
+    for (int b = 0; b < sys->n_bodies; b++) {
+        for (int k = 0; k < 6; k++) {
+            const int dof = sys->bodies[b].dof[k];
+            const double unit = k < 3 ? sys->length_m : 1.0;
+            t->astray = dof < 0 ? t->astray : fmax(t->astray, fabs(m->left[dof]) / unit);
+        }
+    }
+    return MT_OK;
+}
+
+/* Set the geometric stiffness of the loads, with the position in equilibrium; *is_tree false:
+ * not a tree, with the reason in why. Fails: MT_E_MEMORY, MT_E_NOT_SPD. */
+static mt_status tree_loads(tree_maker *m, mt_arena *mem, mt_arena *scratch, bool *is_tree,
+                            mt_err *err)
 {
     mt_tree *const t = m->t;
     const size_t n = (size_t)t->n;
@@ -702,8 +742,15 @@ static mt_status tree_loads(tree_maker *m, mt_arena *mem, bool *is_tree, mt_err 
     t->force = mt_arena_f64(mem, n, 1);
     t->geometric_stiffness = mt_arena_f64(mem, n * s, s);
     t->geometric_stiffness_shared = mt_arena_f64(mem, n * s, s);
+    m->round = mt_arena_f64(scratch, n, 1);
     MT_TRY(mt_arena_check(mem, err));
-    *is_tree = mt_forces_each(&m->data, m->pose, add_force, &l);
+    MT_TRY(mt_arena_check(scratch, err));
+    if (t->settled_at == NULL) {
+        *is_tree = mt_forces_each(&m->data, m->pose, add_force, &l);
+    } else {
+        MT_TRY(find_balance(m, scratch, err));
+        *is_tree = mt_forces_at(&m->data, &m->at, m->left, m->open, add_force, &l);
+    }
     if (!*is_tree) {
         (void)mt_snprintf(m->why, MT_TREE_WHY,
                           "a load acts between bodies that hang on others");
@@ -937,14 +984,13 @@ static bool has_form(const tree_maker *m)
     return true;
 }
 
-/* True where the joints are closed in the drawn position. */
+/* True where the joints are closed in the position. */
 static bool is_closed(tree_maker *m)
 {
     const mt_system *const sys = m->t->sys;
-    if (sys->drawn_closed) {
+    if (sys->drawn_closed && m->t->settled_at == NULL) {
         return true;
     }
-    mt_data_targets(&m->data);
     for (int i = 0; i < sys->n_constraints; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
         const mt_measure_def *const def = &sys->measures[c->measure[0]];
@@ -953,10 +999,11 @@ static bool is_closed(tree_maker *m)
                                                   mt_pose_of(m->pose, def->body[1]), NULL)) -
                            creal(m->data.target[i]);
         if (!(fabs(gap) <= DRAWN_CLOSED * sys->length_m)) {
-            (void)mt_snprintf(m->why, MT_TREE_WHY,
-                              "joint \"%s\" is not closed in the reference "
-                              "position",
-                              sys->joints[c->joint].name);
+            (void)mt_snprintf(m->why, MT_TREE_WHY, "joint \"%s\" is not closed %s",
+                              sys->joints[c->joint].name,
+                              m->t->settled_at == NULL ? "in the reference position"
+                                                       : "to rounding where it has settled");
+            m->moves = true;
             return false;
         }
     }
@@ -1040,19 +1087,10 @@ static mt_status make_tree(tree_maker *m, const double *inputs, mt_arena *mem,
                            mt_arena *scratch, bool *is_tree, mt_err *err)
 {
     const mt_system *const sys = m->t->sys;
-    double *const value = mt_arena_f64(scratch, (size_t)sys->program.count, 1);
-    m->pose = mt_arena_alloc(scratch, (size_t)sys->n_bodies, sizeof *m->pose);
-    MT_TRY(mt_data_init(&m->data, sys, scratch, err));
-    MT_TRY(mt_program_eval(&sys->program, inputs, value, NULL, err));
+    MT_TRY(mt_absolute_stand(sys, m->t->settled_at, inputs, &m->data, &m->at, scratch, err));
+    m->pose = m->at.pose;
     MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
-    m->data.value = value;
-    *is_tree = has_form(m);
-    if (!*is_tree) {
-        return MT_OK;
-    }
-    mt_data_vecs(&m->data);
-    mt_data_drawn(&m->data, m->pose);
-    *is_tree = is_closed(m);
+    *is_tree = has_form(m) && is_closed(m);
     if (*is_tree) {
         MT_TRY(order_bodies(m, mem, scratch, is_tree, err));
     }
@@ -1065,7 +1103,7 @@ static mt_status make_tree(tree_maker *m, const double *inputs, mt_arena *mem,
         MT_TRY(tree_masses(m, mem, is_tree, err));
     }
     if (*is_tree && sys->loaded) {
-        MT_TRY(tree_loads(m, mem, is_tree, err));
+        MT_TRY(tree_loads(m, mem, scratch, is_tree, err));
     }
     if (*is_tree) {
         MT_TRY(choose_coordinates(m, mem, is_tree, err));
@@ -1073,20 +1111,24 @@ static mt_status make_tree(tree_maker *m, const double *inputs, mt_arena *mem,
     return MT_OK;
 }
 
-mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem, mt_tree **out,
-                      char why[MT_TREE_WHY], mt_err *err)
+mt_status mt_tree_new(const mt_system *sys, const double *inputs, const mt_state *settled,
+                      mt_arena *mem, mt_tree **out, bool *moves, char why[MT_TREE_WHY],
+                      mt_err *err)
 {
     mt_arena scratch = {.first = NULL};
     mt_tree *const t = mt_arena_alloc(mem, 1, sizeof *t);
     tree_maker m = {.t = t, .why = why};
     bool is_tree = false;
     *out = NULL;
+    *moves = false;
     why[0] = '\0';
     MT_TRY(mt_arena_check(mem, err));
-    *t = (mt_tree){.sys = sys, .s = sys->dimension == 2 ? 3 : MT_TREE_MOTION};
+    *t = (mt_tree){
+        .sys = sys, .settled_at = settled, .s = sys->dimension == 2 ? 3 : MT_TREE_MOTION};
     mt_status rc = mt_arena_init(&scratch, 0, err);
     rc = rc == MT_OK ? make_tree(&m, inputs, mem, &scratch, &is_tree, err) : rc;
     mt_arena_free(&scratch);
+    *moves = m.moves;
     *out = rc == MT_OK && is_tree ? t : NULL;
     return rc;
 }

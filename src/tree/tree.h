@@ -2,13 +2,14 @@
 #ifndef TREE_TREE_H
 #define TREE_TREE_H
 
-#include "mechanics/system.h"
+#include "mechanics/position.h"
 
 /*
- * A mechanism that is a tree, in equilibrium in its drawn position, in coordinates of its
- * edges. Every body has one parent body (or the ground); joints, springs and shared masses
- * connect a body to its parent only. With v the motion of a body (dx, theta; absolute), X the
- * rigid motion with the parent, and N the motions that the joints of its edge allow,
+ * A mechanism that is a tree, in equilibrium in its drawn position or where it has settled
+ * under its loads, in coordinates of its edges. Every body has one parent body (or the
+ * ground); joints, springs and shared masses connect a body to its parent only. With v the
+ * motion of a body (dx, theta; absolute), X the rigid motion with the parent, and N the motions
+ * that the joints of its edge allow,
  *     v_i = X_i v_before(i) + N_i (F_i y_i + R_i r_i):
  * R spans the motions without spring stiffness, and F scales the energy of the edge's springs
  * to |y_i|^2/2. Then
@@ -26,12 +27,13 @@
  */
 typedef struct mt_tree {
     const mt_system *sys;
-    int n;                 /* bodies */
-    int s;                 /* entries of v: (dx, dy, theta), or (dx, theta) in space */
-    int n_x;               /* coordinates */
-    int n_rigid;           /* rigid-body motions besides x: all r without loads */
-    int depth;             /* bodies on the longest path to the ground */
-    int *body;             /* [n] body of the system, parents first */
+    const mt_state *settled_at; /* NULL: the drawn position */
+    int n;                      /* bodies */
+    int s;                      /* entries of v: (dx, dy, theta), or (dx, theta) in space */
+    int n_x;                    /* coordinates */
+    int n_rigid;                /* rigid-body motions besides x: all r without loads */
+    int depth;                  /* bodies on the longest path to the ground */
+    int *body;                  /* [n] body of the system, parents first */
     int *before;           /* [n] index of the parent in this order; -1: the ground, or none */
     int *place;            /* [bodies] index of a body of the system in this order */
     int *first_constraint; /* [n] of its edge; -1: none; then next_constraint[constraints] */
@@ -53,9 +55,13 @@ typedef struct mt_tree {
     /* s x s of each body: geometric stiffness; NULL: nothing loads */
     double *geometric_stiffness;
     double *geometric_stiffness_shared; /* as shared */
-    double *force;     /* [n] sum of |forces| on the body and its descendants [N] */
-    double *pushed;    /* s x n: gradient of the loads' potential for the same */
-    double *held;      /* [constraints] multiplier of each equation */
+    double *force;  /* [n] sum of |forces| on the body and its descendants [N] */
+    double *pushed; /* s x n: gradient of the loads' potential for the same */
+    double *held;   /* [constraints] multiplier of each equation */
+    /* of where it has settled: the largest motion to where the forces balance [model lengths,
+     * rad], and what is unbalanced there as a part of the forces */
+    double astray;
+    double unbalanced;
     double *transport; /* X', s x s of each body; NULL without loads */
     double *scaled;    /* N', as basis; NULL without loads */
     double *settled;   /* sum of |terms| of each body's stiffness, s x s; NULL without loads */
@@ -64,13 +70,17 @@ typedef struct mt_tree {
 enum { MT_TREE_WHY = 200, MT_TREE_FREE_DOFS = 64 };
 
 /**
- * @param[in]  inputs  [n_inputs] of the system
- * @param[out] out     in mem; NULL where the system is not such a tree
- * @param[out] why     then the reason: "joint \"a\" is part of a loop"
+ * @param[in]  inputs   [n_inputs] of the system
+ * @param[in]  settled  its equilibrium there (MT_POSITION_SPARSE), must outlive out; NULL: the
+ *                      drawn position
+ * @param[out] out      in mem; NULL where the system is not such a tree
+ * @param[out] moves    then: only because the position is not closed or not at rest
+ * @param[out] why      then the reason: "joint \"a\" is part of a loop"
  * Fails: MT_E_DOMAIN (a number has no value), MT_E_INTERRUPTED, MT_E_MEMORY.
  */
-mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem, mt_tree **out,
-                      char why[MT_TREE_WHY], mt_err *err);
+mt_status mt_tree_new(const mt_system *sys, const double *inputs, const mt_state *settled,
+                      mt_arena *mem, mt_tree **out, bool *moves, char why[MT_TREE_WHY],
+                      mt_err *err);
 
 /* v[s n] := T (x, r); r may be NULL (0). */
 void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *v);
@@ -122,7 +132,7 @@ typedef struct mt_tree_modes {
 /**
  * Derivatives of eigenvalues by every input: exact, O(bodies) for an input that all bodies
  * depend on.
- * @param[in]  inputs  [n_inputs] those that the tree was made with
+ * @param[in]  inputs  [n_inputs] those that the tree was made with, in its drawn position
  * @param[out] slope   n_pairs x n_inputs, phi_a^T (K - lambda M)' phi_b in the freedoms:
  *   lambda' for a pair (a, a); for repeated modes the matrix whose eigenvalues are their
  *   directional derivatives

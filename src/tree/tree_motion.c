@@ -640,6 +640,32 @@ static double settled_by(const mt_tree *t, const double *v)
     return sum;
 }
 
+/*
+ * Of a place that is off its equilibrium by `astray`: arms and forces turn with it, so masses
+ * and the loads' stiffness change by as much of the sum of their terms, and the latter by what
+ * is unbalanced as well; to first order, with room for the terms of a square.
+ */
+static const double TURNED = 4.0;
+
+static double astray_by(const mt_tree *t, const double *v, double mass_size, double mass,
+                        double energy)
+{
+    const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
+    double size = 0.0;
+    for (int i = 0; i < t->n && t->settled_at != NULL; i++) {
+        const double *const own = v + ((ptrdiff_t)t->s * i);
+        (void)form(t->s, t->geometric_stiffness + (square * i), own, own, &size);
+        if (t->before[i] >= 0) {
+            double of_pair = 0.0;
+            (void)form(t->s, t->geometric_stiffness_shared + (square * i),
+                       v + ((ptrdiff_t)t->s * t->before[i]), own, &of_pair);
+            size += 2.0 * of_pair;
+        }
+    }
+    return (TURNED * t->astray * ((mass_size / mass) + (size / energy))) +
+           (t->unbalanced * size / energy);
+}
+
 /* Cancellation in the strains of a motion of this energy, in roundings. */
 static double lost_by(const mt_tree *t, const double *x, double energy)
 {
@@ -678,4 +704,5 @@ void mt_tree_rate(const mt_tree *t, const double *x, const double *r, const doub
     q->noise =
         DBL_EPSILON * ((((2.0 * error) + (MASS_ULPS * size)) / mass) +
                        (((SETTLED_ULPS * settled) + (2.0 * STRAIN_ULPS * lost)) / energy));
+    q->noise += t->settled_at == NULL ? 0.0 : astray_by(t, v, size, mass, energy);
 }

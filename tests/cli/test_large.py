@@ -117,7 +117,7 @@ class Large(CliTest):
         def loaded(n):
             return self.write(f"bent{n}.json", json.dumps({**large.link(n), "gravity_m_per_s2": [0, -9.81]}))
         whole, few, many = (self.modes(loaded(n), *options) for n, options in ((120, ()), (120, ("--count", "20")), (1500, ("--count", "20"))))
-        self.assertEqual([m["method"] for m in (whole, few, many)], ["dense", "sparse", "sparse"])
+        self.assertEqual([m["method"] for m in (whole, few, many)], ["dense", "tree", "tree"])
         self.assertEqual([len(m["modes"]) for m in (few, many)], [20, 20])
         for k, (one, other, fine) in enumerate(zip(few["modes"], whole["modes"], many["modes"])):
             bound = one["omega_squared_error"] + other["omega_squared_error"]
