@@ -338,12 +338,16 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
 static mt_status make_tree(mt_lowest *l, mt_lowest_want want, mt_err *err)
 {
     const mt_run *const run = l->sys->run;
+    const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
     bool moves = false;
     bool told = mt_progress_begin(run->progress, "order of the bodies", 0);
     const mt_status rc =
         mt_tree_new(l->sys, l->at, NULL, &l->mem, &l->tree, &moves, l->why, err);
     mt_progress_end(run->progress, told);
     MT_TRY(rc);
+    if (l->tree == NULL) {
+        mt_arena_rewind(&l->mem, mark);
+    }
     if (l->tree != NULL || !moves || !l->sys->loaded || want.drawn) {
         return MT_OK;
     }

@@ -143,9 +143,11 @@ static mt_status compute_quotients(finding *f, int first, int count, mt_err *err
     return MT_OK;
 }
 
-/* Search `more` modes in the complement of those found. */
-static mt_status search_complement(finding *f, int more, int round, mt_arena *mem, mt_err *err)
+/* Search `more` modes in the complement of those found. The iteration's basis is as large as
+ * many vectors; it is given back before the vectors are refined. */
+static mt_status search_complement(finding *f, int more, int round, mt_err *err)
 {
+    mt_arena basis = {.first = NULL};
     const mt_lowest_problem *const p = f->p;
     const int room = (p->most < f->most ? p->most : f->most) - f->n;
     const int wanted = more < room ? more : room;
@@ -159,7 +161,10 @@ static mt_status search_complement(finding *f, int more, int round, mt_arena *me
                                 .n_locked = f->n,
                                 .locked = f->x};
     int got = 0;
-    MT_TRY(mt_lanczos_largest(&lanczos, mem, column(f, f->x, f->n), &got, err));
+    MT_TRY(mt_arena_init(&basis, 0, err));
+    const mt_status rc = mt_lanczos_largest(&lanczos, &basis, column(f, f->x, f->n), &got, err);
+    mt_arena_free(&basis);
+    MT_TRY(rc);
     f->exhausted = got < wanted || f->n + got == p->most;
     MT_TRY(compute_quotients(f, f->n, got, err));
     for (int i = f->n; i < f->n + got; i++) {
@@ -213,7 +218,7 @@ static mt_status find_counted_modes(finding *f, mt_arena *mem, double *tau, int 
     const mt_lowest_problem *const p = f->p;
     int more = f->most;
     for (int round = 0; round < ROUNDS && p->most > 0; round++) {
-        MT_TRY(search_complement(f, more, round, mem, err));
+        MT_TRY(search_complement(f, more, round, err));
         const int j = find_widest_gap(f);
         more = f->n > MORE ? f->n : MORE; /* no end of equal ones is in sight */
         if (j > 0) {

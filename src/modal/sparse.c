@@ -225,9 +225,10 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Column by column, once for the pattern. */
+/* Column by column, once for the pattern. inner (NULL): has places of the sum alone; where
+ * these are all of them, the pattern is shared. */
 static mt_status assemble_lower(const sums *from, void (*sum)(const sums *, int, column *),
-                                column *c, mt_lower *out, mt_err *err)
+                                column *c, const mt_lower *inner, mt_lower *out, mt_err *err)
 {
     const int n = from->s->p->n;
     mt_arena *const mem = from->s->mem;
@@ -243,7 +244,8 @@ static mt_status assemble_lower(const sums *from, void (*sum)(const sums *, int,
         }
         out->start[j + 1] = out->start[j] + c->n;
     }
-    out->row = mt_arena_int(mem, (size_t)out->start[n]);
+    const bool same = inner != NULL && inner->start[n] == out->start[n];
+    out->row = same ? inner->row : mt_arena_int(mem, (size_t)out->start[n]);
     out->value = mt_arena_f64(mem, (size_t)out->start[n], 1);
     MT_TRY(mt_arena_check(mem, err));
     memset(c->mark, 0, (size_t)n * sizeof *c->mark);
@@ -268,8 +270,8 @@ static mt_status assemble_both(sparse *s, mt_arena *scratch, mt_err *err)
     mt_rows_transpose(&p->k.row, p->n, scratch, &from.k);
     mt_rows_transpose(&p->m.row, p->n, scratch, &from.m);
     MT_TRY(column_init(&c, p->n, scratch, err));
-    MT_TRY(assemble_lower(&from, sum_mass, &c, &s->m, err));
-    return assemble_lower(&from, sum_stiffness, &c, &s->k, err);
+    MT_TRY(assemble_lower(&from, sum_mass, &c, NULL, &s->m, err));
+    return assemble_lower(&from, sum_stiffness, &c, &s->m, &s->k, err);
 }
 
 /* y := M x. */
