@@ -13,7 +13,7 @@
 #include "cli/cli.h"
 #include "cli/documents_data.h"
 #include "cli/shipped.h"
-#include "io/shipped.h"
+#include "io/file.h"
 
 /* The document of the commands. */
 #define DOCUMENT_COMMANDS "src/cli/README.md"

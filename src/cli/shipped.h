@@ -3,7 +3,7 @@
 #define CLI_SHIPPED_H
 
 #include "cli/args.h"
-#include "io/shipped.h"
+#include "io/file.h"
 #include "vibration/profile_response.h"
 
 /* A kind of shipped files: those in one folder with one ending; the name is between these. */

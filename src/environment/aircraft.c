@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "io/file.h"
-#include "io/json_print.h"
+#include "io/json.h"
 #include "io/members.h"
-#include "io/shipped.h"
 
 /* The state of reading a catalogue. */
 typedef struct aircraft_reader {

@@ -10,7 +10,7 @@
 #include "base/possible.h"
 #include "base/text.h"
 #include "io/file.h"
-#include "io/json_print.h"
+#include "io/json.h"
 #include "io/members.h"
 
 static const double DB_PER_OCTAVE = 3.0102999566398120; /* 10 log10(2): of an exponent of 1 */

@@ -2,6 +2,8 @@
 #ifndef IO_FILE_H
 #define IO_FILE_H
 
+#include "modetune/read.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -57,5 +59,45 @@ char *mt_file_folder(const char *path);
 /* The folder that the files named by a study must lie in by default: the parent of its folder
  * ("folder/.."). Heap. */
 char *mt_file_default_root(const char *study_path);
+
+/* The source of files: some are given as texts, found by their paths ("a/../b" being "b"); the
+ * others are on the disk, or (only) do not exist. Zeroed: the disk. */
+typedef struct mt_files {
+    const mt_file_text *given; /* [n] */
+    int n;
+    bool only;
+} mt_files;
+
+/* As mt_file_read, from this source; files may be NULL. root does not apply to given texts.
+ * O(n) paths. */
+mt_status mt_files_read(const mt_files *files, const char *path, const char *root, size_t limit,
+                        mt_file *out, mt_err *err);
+/* The path without ".", "a/.." and doubled slashes, by its text alone; heap, NULL when out of
+ * memory. */
+char *mt_files_normal(const char *path);
+/* *out: true where the path is given as text. Fails: MT_E_MEMORY. */
+mt_status mt_files_give(const mt_files *files, const char *path, bool *out, mt_err *err);
+/* True where the path certainly leads to nothing in this source. */
+bool mt_files_lack(const mt_files *files, const char *path);
+
+/* Files of the source distribution that are built into the program: schemas/, problems/,
+ * studies/, and the templates of `init`, init/. */
+typedef struct mt_shipped {
+    const char *path;  /* "schemas/model.schema.json" */
+    const char *bytes; /* size bytes and a NUL */
+    size_t size;
+} mt_shipped;
+
+/* All files, ordered by path; *n is their number. */
+const mt_shipped *mt_shipped_all(int *n);
+/* The file of that path among n files; NULL: none. */
+const mt_shipped *mt_shipped_among(const mt_shipped *of, int n, const char *path);
+/* The file of that path among all files; NULL: none. */
+const mt_shipped *mt_shipped_find(const char *path);
+
+/* Call f(context, err) with this thread in the locale "C", so that numbers of the C library
+ * have its decimal point; then restore the thread's locale. Fails: as f, MT_E_MEMORY. */
+mt_status mt_locale_plain(mt_status (*f)(void *context, mt_err *err), void *context,
+                          mt_err *err);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdio.h> /* renameat */
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,74 @@
 #include "base/text.h"
 #include "io/file.h"
 #include "io/folder.h"
-#include "io/journal_head.h"
+
+/* The head of a journal (io/journal.h): format, digest of the identity, and the identity behind
+ * bars. */
+#define JOURNAL_FORMAT "modetune-journal/1 "
+
+/* Members of the identity that say how the processor computes. */
+static bool is_of_processor(const char *line, size_t n)
+{
+    static const char *const names[] = {"\"blas\":", "\"arithmetic\":"};
+    const size_t blanks = strspn(line, " ");
+    for (int i = 0; i < MT_COUNT(names); i++) {
+        const size_t m = strlen(names[i]);
+        if (n > blanks + m && memcmp(line + blanks, names[i], m) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* MT_E_INPUT, naming the first line of the identity, other than those of the processor, in
+ * which another head differs; where only the processor differs (*foreign), its first line.
+ * theirs: the lines behind bars. */
+static mt_status journal_refuse(const char *identity, const char *path, const char *theirs,
+                                bool *foreign, mt_err *err)
+{
+    const char *ours = identity;
+    const char *first[2] = {NULL, NULL};
+    *foreign = true;
+    while (theirs[0] == '|' && theirs[1] == ' ' && *foreign) {
+        const size_t n = strcspn(theirs + 2, "\n");
+        const size_t m = strcspn(ours, "\n");
+        if (n != m || memcmp(theirs + 2, ours, n) != 0) {
+            *foreign = is_of_processor(theirs + 2, n) && is_of_processor(ours, m);
+            if (first[0] == NULL || !*foreign) {
+                first[0] = theirs + 2;
+                first[1] = ours;
+            }
+        }
+        theirs += 2 + n + (theirs[2 + n] == '\n' ? 1 : 0);
+        ours += m + (ours[m] == '\n' ? 1 : 0);
+    }
+    *foreign = *foreign && first[0] != NULL && *ours == '\0';
+    if (first[0] == NULL) {
+        return mt_fail(err, MT_E_INPUT, "%s: the head of the journal is damaged", path);
+    }
+    const size_t n = strcspn(first[0], "\n");
+    const size_t m = strcspn(first[1], "\n");
+    return mt_fail(err, MT_E_INPUT, "%s: %s: it has `%.*s` where this run has `%.*s`", path,
+                   *foreign ? "the journal of a processor that computes otherwise"
+                            : "the journal of another question or program",
+                   (int)(n < 200 ? n : 200), first[0], (int)(m < 200 ? m : 200), first[1]);
+}
+
+static mt_text journal_head(const char *identity, const char *sha256)
+{
+    mt_text head = {.s = NULL};
+    mt_text_add(&head, JOURNAL_FORMAT);
+    mt_text_add(&head, sha256);
+    mt_text_add(&head, "\n");
+    for (const char *s = identity; *s != '\0';) {
+        const size_t n = strcspn(s, "\n");
+        mt_text_add(&head, "| ");
+        mt_text_add_n(&head, s, n);
+        mt_text_add(&head, "\n");
+        s += n + (s[n] == '\n' ? 1 : 0);
+    }
+    return head;
+}
 
 /* Digits of a SHA-256 that a line has: nobody works against the engineer here, a disk does. */
 enum { CHECK = 16, NIBBLE = 4, WORD_DIGITS = 16 };
@@ -134,7 +202,7 @@ static mt_status add_record(mt_journal *j, const record *r, mt_err *err)
 static mt_status skip_head(const mt_journal *j, const char *path, const mt_file *file,
                            char **records, bool *torn, bool *foreign, mt_err *err)
 {
-    mt_text head = mt_journal_head(j->identity, j->sha256);
+    mt_text head = journal_head(j->identity, j->sha256);
     if (head.failed || head.s == NULL || file->bytes == NULL) {
         mt_text_free(&head);
         return mt_fail_memory(err);
@@ -147,11 +215,11 @@ static mt_status skip_head(const mt_journal *j, const char *path, const mt_file 
     if (same) {
         return MT_OK;
     }
-    if (strncmp(file->bytes, MT_JOURNAL_FORMAT, strlen(MT_JOURNAL_FORMAT)) != 0) {
+    if (strncmp(file->bytes, JOURNAL_FORMAT, strlen(JOURNAL_FORMAT)) != 0) {
         return mt_fail(err, MT_E_INPUT, "%s: not a journal of modetune", path);
     }
     const char *const line = strchr(file->bytes, '\n');
-    return mt_journal_refuse(j->identity, path, line == NULL ? "" : line + 1, foreign, err);
+    return journal_refuse(j->identity, path, line == NULL ? "" : line + 1, foreign, err);
 }
 
 static mt_status read_records(mt_journal *j, source *from, char *at, mt_err *err)
@@ -443,7 +511,7 @@ static void write_all(mt_journal *j, const char *s, size_t n)
 
 static void write_head(mt_journal *j)
 {
-    mt_text head = mt_journal_head(j->identity, j->sha256);
+    mt_text head = journal_head(j->identity, j->sha256);
     if (head.failed) {
         (void)mt_fail_memory(&j->err);
     } else {

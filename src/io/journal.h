@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "base/base.h"
 #include "base/workers.h"
 
 /*

@@ -9,9 +9,9 @@
 #include "base/text.h"
 
 /*
- * A JSON text, strictly RFC 8259: scanned first (io/scan.c validates everything and records the
- * place of each value), then parsed by cJSON, which builds the values. Also refused, beyond the
- * RFC, are a byte order mark, a name given twice in an object, U+0000 in a string, numbers
+ * A JSON text, strictly RFC 8259: scanned first (mt_json_scan validates everything and records
+ * the place of each value), then parsed by cJSON, which builds the values. Also refused, beyond
+ * the RFC, are a byte order mark, a name given twice in an object, U+0000 in a string, numbers
  * outside the range of a double, nesting deeper than MT_JSON_MAX_DEPTH, more than
  * MT_JSON_MAX_BYTES bytes or MT_JSON_MAX_VALUES values.
  *
@@ -81,5 +81,66 @@ mt_addr mt_json_name_addr(const mt_json *doc, mt_addr value);
 /* Offsets in bytes of the beginning and the end (one past) of the source text of a number or
  * string (quotes included). False for values of other types. */
 bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end);
+
+/*
+ * The strict scanner of JSON texts. It refuses all of that except names given twice and numbers
+ * out of range, whose detection needs values. It records only what cJSON does not: the place of
+ * each value.
+ */
+
+/* A value, in document order (its index is its address), or a syntax error. */
+typedef struct mt_json_spot {
+    unsigned start; /* offset of its first byte */
+    unsigned name;  /* offset of the quote that opens its name; 0: not a member */
+    int parent;     /* its list or object; MT_NO_ADDR: none */
+    bool mistake;
+} mt_json_spot;
+
+typedef struct mt_json_spots {
+    mt_json_spot *items; /* in the arena of the diagnostics, which remembers a shortage */
+    int n;
+    int capacity;
+    int most; /* [in] largest number of values; a text with more is refused */
+} mt_json_spots;
+
+/* Scan all values of a text of length bytes followed by a NUL; syntax errors go to diags with
+ * their addresses. A text longer than MT_JSON_MAX_BYTES is not read. O(length). */
+void mt_json_scan(const char *text, size_t length, mt_json_spots *out, mt_diags *diags);
+
+/*
+ * The items of a list or the members of an object, in order:
+ *     for (mt_items i = mt_reader_items(r, value); mt_items_next(&i);) { ... i.at ... }
+ * An array is allocated (mt_reader_room) from the walk that fills it: the count is that of the
+ * walk, so no item exceeds the array. A test checks that no other code walks or counts values.
+ */
+typedef struct mt_items {
+    const mt_json *doc;
+    mt_addr at;   /* the present item; MT_NO_ADDR before the first and after the last */
+    mt_addr next; /* the one after it */
+    int count;    /* items of the whole walk */
+    int left;     /* items not yet visited */
+} mt_items;
+
+/* The items of a value; of MT_NO_ADDR none. */
+mt_items mt_json_items(const mt_json *doc, mt_addr value);
+/* Go on to the next item; false where there is none. */
+bool mt_items_next(mt_items *items);
+
+/* Conversion of addresses to places and JSON pointers, and diagnostics with these. */
+
+/* The line and column of an address. */
+void mt_json_locate(const mt_json *doc, mt_addr addr, int *line, int *column);
+/* The same for n addresses of values in ascending order, in one walk through the text. */
+void mt_json_locates(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns);
+/* The value that a JSON pointer of so many bytes leads to; MT_NO_ADDR where there is none. */
+mt_addr mt_json_find(const mt_json *doc, const char *pointer, size_t length);
+/* Append the JSON pointer of an address (RFC 6901: ~ is ~0, / is ~1; the root's is empty). */
+void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out);
+/* Add all diagnostics with their places, sorted by place (those of one place in the order
+ * found), and the number of those beyond MT_DIAG_LIMIT. */
+void mt_json_report(const mt_json *doc, const char *file, mt_diagnostics *out);
+/* MT_E_MEMORY, MT_E_INPUT where there are errors, or MT_OK. err: the first error as printed,
+ * and the number of others. */
+mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err);
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef IO_OPTIONS_H
 #define IO_OPTIONS_H
 
-#include "io/files.h"
+#include "io/file.h"
 
 /* Numbers that override those of the files. */
 typedef struct mt_overrides {

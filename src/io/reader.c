@@ -4,9 +4,11 @@
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <string.h>
 
-#include "io/json_print.h"
+#include "base/format.h"
+#include "io/json.h"
 #include "io/synonyms.h"
 
 static const char *const KEY_TEXTS[] = {
@@ -272,20 +274,9 @@ void mt_reader_check_range(mt_reader *r, mt_addr member, mt_addr value, double n
     }
 }
 
-static mt_items no_items(const mt_reader *r)
-{
-    return (mt_items){.doc = r->doc, .at = MT_NO_ADDR, .next = MT_NO_ADDR};
-}
-
 mt_items mt_reader_items(const mt_reader *r, mt_addr value)
 {
-    mt_items items = no_items(r);
-    if (value != MT_NO_ADDR) {
-        items.count = mt_json_count(r->doc, value);
-        items.left = items.count;
-        items.next = mt_json_first(r->doc, value);
-    }
-    return items;
+    return mt_json_items(r->doc, value);
 }
 
 mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value)
@@ -293,7 +284,7 @@ mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value)
     if (value == MT_NO_ADDR || mt_json_type_of(r->doc, value) == MT_JSON_ARRAY) {
         return mt_reader_items(r, value);
     }
-    mt_items items = no_items(r);
+    mt_items items = mt_json_items(r->doc, MT_NO_ADDR);
     items.count = 1;
     items.left = 1;
     items.next = value;
@@ -307,17 +298,6 @@ mt_items mt_reader_some_items(mt_reader *r, mt_addr value, const char *what)
         mt_diag_structure(r->diags, value, "%s is empty", what);
     }
     return items;
-}
-
-bool mt_items_next(mt_items *items)
-{
-    items->at = items->left > 0 ? items->next : MT_NO_ADDR;
-    if (items->at == MT_NO_ADDR) {
-        return false;
-    }
-    items->left--;
-    items->next = items->left > 0 ? mt_json_next(items->doc, items->at) : MT_NO_ADDR;
-    return true;
 }
 
 int mt_reader_pair(const mt_reader *r, mt_addr value, mt_addr *first, mt_addr *second)
@@ -468,7 +448,7 @@ mt_accepted mt_reader_accepted(mt_reader *r, mt_addr value)
 {
     mt_items items = mt_reader_items(r, value);
     mt_accepted out = {.names = mt_reader_room(r, &items, sizeof *out.names)};
-    while (mt_items_next(&items)) {
+    while (out.names != NULL && mt_items_next(&items)) {
         const int k = mt_reader_choice(r, items.at, "warning", mt_warning_names,
                                        MT_COUNT(mt_warning_names));
         if (k != MT_ABSENT) {
@@ -556,4 +536,81 @@ mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err)
 {
     MT_TRY(mt_arena_check(r->mem, err));
     return mt_json_status(r->doc, file, err);
+}
+
+/* Numbers in units other than SI. */
+
+const char *const mt_length_names[MT_LENGTH_NAMES] = {"m", "mm", "cm", "in", "ft"};
+const char *const mt_angle_names[MT_ANGLE_NAMES] = {"rad", "deg"};
+const char *const mt_speed_names[MT_SPEED_NAMES] = {"Hz", "rpm"};
+
+/* The unit of a dimension that the text names; NULL where absent or wrong (noted). */
+static const mt_unit *read_unit(mt_reader *r, mt_addr value, mt_dimension dimension)
+{
+    int n = 0;
+    const mt_unit *const all = mt_units(&n);
+    const char *names[MT_MAX_KEYS] = {NULL};
+    int n_names = 0;
+    const char *const text = value == MT_NO_ADDR ? NULL : mt_json_string(r->doc, value);
+    const mt_unit *const meant = text == NULL ? NULL : mt_unit_find(text);
+    for (int i = 0; i < n; i++) {
+        if (all[i].dimension == dimension && mt_unit_is_common(&all[i])) {
+            names[n_names++] = all[i].name;
+        }
+    }
+    if (meant != NULL && !mt_unit_is_common(meant)) {
+        mt_diag_structure(
+            r->diags, value,
+            "\"%s\" is a unit of a parameter's number only: write \"%s\" or \"%s\"", text,
+            names[0], names[1]);
+        return NULL;
+    }
+    if (meant != NULL && meant->dimension != dimension) {
+        mt_diag_structure(r->diags, value,
+                          "\"%s\" is a unit of %s, not of %s: write \"%s\" or \"%s\"", text,
+                          mt_dimension_text(meant->dimension), mt_dimension_text(dimension),
+                          names[0], names[1]);
+        return NULL;
+    }
+    char what[MT_KIND_TEXT];
+    (void)mt_snprintf(what, sizeof what, "unit of %s", mt_dimension_text(dimension));
+    const int which = mt_reader_choice(r, value, what, names, n_names);
+    return which == MT_ABSENT ? NULL : mt_unit_find(names[which]);
+}
+
+void mt_read_units(mt_reader *r, mt_addr value, const mt_key_table *table,
+                   const mt_unit *units[MT_DIMENSION_COUNT])
+{
+    mt_addr at[MT_DIMENSION_COUNT];
+    for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
+        at[d] = MT_NO_ADDR;
+    }
+    (void)mt_reader_object(r, value, table, at);
+    for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
+        units[d] = read_unit(r, at[d], (mt_dimension)d);
+    }
+}
+
+bool mt_reader_expr_in(mt_reader *r, mt_addr value, const mt_unit *unit, mt_expr *out)
+{
+    if (unit == NULL || value == MT_NO_ADDR ||
+        mt_json_type_of(r->doc, value) != MT_JSON_NUMBER) {
+        return mt_reader_expr(r, value, out);
+    }
+    const double number = mt_unit_to_si(unit, mt_json_number(r->doc, value));
+    if (mt_expr_number(number, r->mem, out, NULL) != MT_OK) {
+        *out = (mt_expr){0};
+        return false;
+    }
+    return true;
+}
+
+void mt_reader_check_kind(mt_reader *r, mt_addr value, const mt_expr *e, const mt_unit *unit)
+{
+    char text[MT_KIND_TEXT];
+    if (value != MT_NO_ADDR && e->length > 0 && r->kinds != NULL &&
+        mt_json_type_of(r->doc, value) == MT_JSON_STRING &&
+        mt_kind_complaint(e, unit, r->kinds, r->context, text, sizeof text)) {
+        mt_diag_error(r->diags, value, "%s", text);
+    }
 }

@@ -164,21 +164,8 @@ bool mt_reader_format(mt_reader *r, const char *format, const char *not_this);
  * not a list"). */
 bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);
 
-/*
- * The items of a list or the members of an object, in order:
- *     for (mt_items i = mt_reader_items(r, value); mt_items_next(&i);) { ... i.at ... }
- * An array is allocated (mt_reader_room) from the walk that fills it: the count is that of the
- * walk, so no item exceeds the array. A test checks that no other code walks or counts values.
- */
-typedef struct mt_items {
-    const mt_json *doc;
-    mt_addr at;   /* the present item; MT_NO_ADDR before the first and after the last */
-    mt_addr next; /* the one after it */
-    int count;    /* items of the whole walk */
-    int left;     /* items not yet visited */
-} mt_items;
-
-/* The items; none where value is MT_NO_ADDR, or neither list nor object. */
+/* The items of a list or the members of an object (io/json.h); none where value is MT_NO_ADDR,
+ * or neither list nor object. */
 mt_items mt_reader_items(const mt_reader *r, mt_addr value);
 /* The items where a single item may be written without the list: any value but a list is its
  * own only item. */
@@ -188,8 +175,6 @@ mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value);
 mt_items mt_reader_some_items(mt_reader *r, mt_addr value, const char *what);
 /* The first two items, MT_NO_ADDR where missing; returns the number of items. */
 int mt_reader_pair(const mt_reader *r, mt_addr value, mt_addr *first, mt_addr *second);
-/* Go on to the next item; false where there is none. */
-bool mt_items_next(mt_items *items);
 /* Zeroed memory in r->mem for all items of a walk; out of memory (noted) gives NULL and ends
  * the walk. */
 void *mt_reader_room(mt_reader *r, mt_items *items, size_t size);
@@ -226,5 +211,26 @@ bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *
 
 /* MT_E_MEMORY, or mt_json_status of the document. */
 mt_status mt_reader_status(const mt_reader *r, const char *file, mt_err *err);
+
+/*
+ * Numbers in units other than SI. A bare number (of JSON) is in the unit that applies at its
+ * place; an expression (a string) is in SI, so an expression there that looks like a bare
+ * number, or has one among its terms, is refused with the correct form.
+ */
+/* The units that "units" of a model or a study may name. */
+enum { MT_LENGTH_NAMES = 5, MT_ANGLE_NAMES = 2, MT_SPEED_NAMES = 2 };
+extern const char *const mt_length_names[MT_LENGTH_NAMES];
+extern const char *const mt_angle_names[MT_ANGLE_NAMES];
+extern const char *const mt_speed_names[MT_SPEED_NAMES];
+/* Read "units" of a model or a study by its table, in the order of mt_dimension: the unit of
+ * each dimension, NULL where none is given. */
+void mt_read_units(mt_reader *r, mt_addr value, const mt_key_table *table,
+                   const mt_unit *units[MT_DIMENSION_COUNT]);
+/* As mt_reader_expr, with a bare number in this unit (NULL: SI). */
+bool mt_reader_expr_in(mt_reader *r, mt_addr value, const mt_unit *unit, mt_expr *out);
+/* Compare the dimension of an expression, given as text at the value, with that of this unit,
+ * which applies to bare numbers there; a mismatch is noted. No check where the unit is NULL or
+ * SI, or for bare numbers. */
+void mt_reader_check_kind(mt_reader *r, mt_addr value, const mt_expr *e, const mt_unit *unit);
 
 #endif

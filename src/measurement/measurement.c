@@ -2,11 +2,14 @@
 #include "measurement/measurement.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/format.h"
 
 enum { DIGITS_MOST = 9 }; /* of the number of a node */
+enum { NUMBER_TEXT = 64, REFUSAL_TEXT = 512 };
 enum { LISTED_MOST = 10, FREEDOM_TEXT = 24 };
 
 mt_measurement mt_measurement_default(mt_name name, mt_addr addr)
@@ -110,4 +113,125 @@ const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem)
         }
     }
     return text == NULL ? "" : text;
+}
+
+/* What readers of tables and of universal files have in common. */
+
+mt_status mt_measuring_refuse(mt_measuring *m, int line, int column, const char *fmt, ...)
+{
+    char text[REFUSAL_TEXT];
+    va_list args;
+    va_start(args, fmt);
+    (void)mt_vsnprintf(text, sizeof text, fmt, args);
+    va_end(args);
+    if (m->messages != NULL) {
+        const mt_diagnostic_place place = {.file = m->path, .line = line, .column = column};
+        mt_diagnostics_add(m->messages, MT_SEVERITY_ERROR, &place, text);
+    }
+    return mt_fail(m->err, MT_E_INPUT, "%s:%d:%d: %s", m->path, line, column, text);
+}
+
+bool mt_measuring_newline(mt_measuring *m)
+{
+    if (m->at >= m->end || (*m->at != '\n' && *m->at != '\r')) {
+        return false;
+    }
+    m->at += m->at[0] == '\r' && m->at + 1 < m->end && m->at[1] == '\n' ? 2 : 1;
+    m->line++;
+    m->start_of_line = m->at;
+    return true;
+}
+
+int mt_measuring_column(const mt_measuring *m)
+{
+    return (int)(m->at - m->start_of_line) + 1;
+}
+
+static size_t digits(const char *s, size_t length, size_t *at)
+{
+    const size_t first = *at;
+    while (*at < length && s[*at] >= '0' && s[*at] <= '9') {
+        (*at)++;
+    }
+    return *at - first;
+}
+
+static void skip_sign(const char *s, size_t length, size_t *at)
+{
+    *at += *at < length && (s[*at] == '+' || s[*at] == '-') ? 1 : 0;
+}
+
+/* [sign] digits [. digits] [exponent]; no "nan", no hexadecimal digits. */
+static bool is_decimal(const char *s, size_t length)
+{
+    size_t at = 0;
+    skip_sign(s, length, &at);
+    size_t n = digits(s, length, &at);
+    if (at < length && s[at] == '.') {
+        at++;
+        n += digits(s, length, &at);
+    }
+    if (n > 0 && at < length && (s[at] == 'e' || s[at] == 'E')) {
+        at++;
+        skip_sign(s, length, &at);
+        n = digits(s, length, &at);
+    }
+    return n > 0 && at == length;
+}
+
+bool mt_measuring_number(const char *text, size_t length, double *out)
+{
+    char own[NUMBER_TEXT];
+    *out = nan("");
+    if (length == 0 || length >= sizeof own) {
+        return false;
+    }
+    for (size_t i = 0; i < length; i++) {
+        const bool power = text[i] == 'D' || text[i] == 'd';
+        own[i] = (char)(power ? 'E' : text[i]);
+    }
+    own[length] = '\0';
+    if (!is_decimal(own, length)) {
+        return false;
+    }
+    *out = strtod(own, NULL);
+    return isfinite(*out);
+}
+
+mt_measured_response *mt_measuring_response(mt_measuring *m)
+{
+    mt_measurement *const out = m->out;
+    mt_measured_response *const list = mt_arena_grow(m->mem, out->responses, out->n_responses,
+                                                     &out->cap_responses, sizeof *list);
+    if (list == NULL) {
+        return NULL;
+    }
+    out->responses = list;
+    list[out->n_responses] = (mt_measured_response){.si = 1.0};
+    return &list[out->n_responses++];
+}
+
+mt_status mt_measuring_add(mt_measuring *m, mt_measured_response *r,
+                           const mt_measured_line *line, int column)
+{
+    const double f = line->frequency_hz;
+    if (!(f >= 0.0)) {
+        return mt_measuring_refuse(m, line->line, column,
+                                   "a frequency must not be below 0, as %.10g Hz is", f);
+    }
+    if (r->n_lines > 0 && !(f > r->lines[r->n_lines - 1].frequency_hz)) {
+        return mt_measuring_refuse(m, line->line, column,
+                                   "frequencies must ascend: %.10g Hz follows %.10g Hz", f,
+                                   r->lines[r->n_lines - 1].frequency_hz);
+    }
+    if (f == 0.0) {
+        return MT_OK;
+    }
+    mt_measured_line *const lines =
+        mt_arena_grow(m->mem, r->lines, r->n_lines, &r->cap_lines, sizeof *lines);
+    if (lines != NULL) {
+        r->lines = lines;
+        lines[r->n_lines++] = *line;
+    }
+    return mt_arena_check(m->mem, m->err);
 }

@@ -2,6 +2,7 @@
 #ifndef MEASUREMENT_MEASUREMENT_H
 #define MEASUREMENT_MEASUREMENT_H
 
+#include "base/diagnostics.h"
 #include "base/document.h"
 
 /* The functions of universal files that are frequency responses. */
@@ -65,5 +66,38 @@ bool mt_measured_freedom_parse(const char *text, mt_measured_freedom *out);
 bool mt_measured_is_response(const mt_measured_response *r);
 /* The contents of a file: "dataset 3: 12+Z by 1+Z; ...". In mem, which remembers a shortage. */
 const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem);
+
+/* The state of reading a text from start to end. The reader owns the bytes and ends texts in
+ * place at separators. */
+typedef struct mt_measuring {
+    const char *path;
+    char *begin;
+    char *at;
+    char *end; /* points at a NUL */
+    char *start_of_line;
+    int line; /* of `at`, from 1 */
+    mt_arena *mem;
+    mt_measurement *out;
+    mt_diagnostics *messages; /* NULL */
+    mt_err *err;
+} mt_measuring;
+
+/* Report MT_E_INPUT with its place. */
+mt_status mt_measuring_refuse(mt_measuring *m, int line, int column, const char *fmt, ...)
+    MT_PRINTF(4, 5);
+/* Skip the end of a line (a line feed, a carriage return, or both); false where `at` is not
+ * one. */
+bool mt_measuring_newline(mt_measuring *m);
+/* The column of `at`, from 1. */
+int mt_measuring_column(const mt_measuring *m);
+/* Read a text that is a finite decimal number and nothing else ("1.5", "-2e-3", Fortran's
+ * "1D+02"). */
+bool mt_measuring_number(const char *text, size_t length, double *out);
+/* Add a line to a response; 0 Hz is left out. Fails: MT_E_INPUT at the place (frequencies do
+ * not ascend, are negative); the arena remembers a shortage. */
+mt_status mt_measuring_add(mt_measuring *m, mt_measured_response *r,
+                           const mt_measured_line *line, int column);
+/* Add a response; NULL: out of memory. */
+mt_measured_response *mt_measuring_response(mt_measuring *m);
 
 #endif

@@ -1,136 +1,379 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measured frequency responses: what tables and universal files have in common. */
+/* Measured frequency responses: tables, of fields as RFC 4180 says and columns by their names;
+ * universal files are read by read_uff.c. */
 #include "measurement/read.h"
 
-#include "measurement/read_priv.h"
-
 #include <math.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/format.h"
-#include "io/locale.h"
+#include "base/sorted.h"
+#include "base/text.h"
+#include "io/file.h"
+#include "measurement/read_uff.h"
 
-enum { NUMBER_TEXT = 64, REFUSAL_TEXT = 512 };
+#define COLUMN_LIST(X)                     \
+    X(FREQUENCY, "frequency_hz")           \
+    X(REAL, "real")                        \
+    X(RE, "re") /* as `response` has it */ \
+    X(IMAG, "imag")                        \
+    X(IM, "im")                            \
+    X(MAGNITUDE, "magnitude")              \
+    X(PHASE, "phase_deg")                  \
+    X(COHERENCE, "coherence")              \
+    X(CONFIGURATION, "configuration")      \
+    X(INPUT, "input")                      \
+    X(OUTPUT, "output")                    \
+    X(UNIT, "unit")
+#define COLUMN_ENUM(id, name) id,
+#define COLUMN_NAME(id, name) name,
+enum { COLUMN_LIST(COLUMN_ENUM) COLUMN_COUNT, FIELDS_MOST = 200 };
+static const char *const NAMES[COLUMN_COUNT] = {COLUMN_LIST(COLUMN_NAME)};
 
-mt_status mt_measuring_refuse(mt_measuring *m, int line, int column, const char *fmt, ...)
+static const double RADIANS_PER_DEG = 3.14159265358979323846 / 180.0;
+
+typedef struct field {
+    char *text;
+    int line;
+    int column;
+} field;
+
+typedef struct table {
+    mt_measuring *m;
+    char separator;
+    int n;                    /* fields of every line */
+    int column[COLUMN_COUNT]; /* field of each, -1: none */
+    int re;                   /* columns of real and imaginary part, or MAGNITUDE and PHASE */
+    int im;
+    field fields[FIELDS_MOST];
+    mt_sorted responses; /* by their labels */
+    int last;            /* the response of the line before; -1: none */
+} table;
+
+static bool ends_field(const table *t, const char *at)
 {
-    char text[REFUSAL_TEXT];
-    va_list args;
-    va_start(args, fmt);
-    (void)mt_vsnprintf(text, sizeof text, fmt, args);
-    va_end(args);
-    if (m->messages != NULL) {
-        const mt_diagnostic_place place = {.file = m->path, .line = line, .column = column};
-        mt_diagnostics_add(m->messages, MT_SEVERITY_ERROR, &place, text);
-    }
-    return mt_fail(m->err, MT_E_INPUT, "%s:%d:%d: %s", m->path, line, column, text);
+    return at >= t->m->end || *at == t->separator || *at == '\n' || *at == '\r';
 }
 
-bool mt_measuring_newline(mt_measuring *m)
+static void skip_blanks(const table *t)
 {
-    if (m->at >= m->end || (*m->at != '\n' && *m->at != '\r')) {
-        return false;
+    mt_measuring *const m = t->m;
+    while (!ends_field(t, m->at) && (*m->at == ' ' || *m->at == '\t')) {
+        m->at++;
     }
-    m->at += m->at[0] == '\r' && m->at + 1 < m->end && m->at[1] == '\n' ? 2 : 1;
-    m->line++;
-    m->start_of_line = m->at;
-    return true;
 }
 
-int mt_measuring_column(const mt_measuring *m)
+/* Read a quoted field from after its quote; its content moves to `to`, which ends at its
+ * end. */
+static mt_status read_quoted(const table *t, char **to)
 {
-    return (int)(m->at - m->start_of_line) + 1;
+    mt_measuring *const m = t->m;
+    const int line = m->line;
+    const int column = mt_measuring_column(m);
+    m->at++;
+    for (;;) {
+        if (m->at >= m->end) {
+            return mt_measuring_refuse(m, line, column, "a quote is opened and not closed");
+        }
+        char *const from = m->at;
+        if (mt_measuring_newline(m)) {
+            *(*to)++ = '\n';
+        } else if (*from != '"') {
+            *(*to)++ = *m->at++;
+        } else if (from + 1 < m->end && from[1] == '"') {
+            *(*to)++ = '"';
+            m->at += 2;
+        } else {
+            m->at++;
+            break;
+        }
+    }
+    skip_blanks(t);
+    return ends_field(t, m->at)
+               ? MT_OK
+               : mt_measuring_refuse(m, m->line, mt_measuring_column(m),
+                                     "behind a closing quote comes neither a separator nor "
+                                     "the end of the line");
 }
 
-static size_t digits(const char *s, size_t length, size_t *at)
+static mt_status read_bare(const table *t, char **to)
 {
-    const size_t first = *at;
-    while (*at < length && s[*at] >= '0' && s[*at] <= '9') {
-        (*at)++;
+    mt_measuring *const m = t->m;
+    for (; !ends_field(t, m->at); m->at++) {
+        if (*m->at == '"') {
+            return mt_measuring_refuse(m, m->line, mt_measuring_column(m),
+                                       "a quote in the midst of a field: quote all of it, and "
+                                       "write the quote twice");
+        }
     }
-    return *at - first;
+    *to = m->at;
+    while (*to > m->start_of_line && ((*to)[-1] == ' ' || (*to)[-1] == '\t')) {
+        (*to)--;
+    }
+    return MT_OK;
 }
 
-static void skip_sign(const char *s, size_t length, size_t *at)
+/* Read a field and skip its separator; *last: true at the end of the line. */
+static mt_status read_field(const table *t, field *out, bool *last)
 {
-    *at += *at < length && (s[*at] == '+' || s[*at] == '-') ? 1 : 0;
+    mt_measuring *const m = t->m;
+    skip_blanks(t);
+    *out = (field){m->at, m->line, mt_measuring_column(m)};
+    char *to = m->at;
+    MT_TRY(*m->at == '"' && m->at < m->end ? read_quoted(t, &to) : read_bare(t, &to));
+    to = to < out->text ? out->text : to; /* a field of blanks */
+    *last = m->at >= m->end || *m->at != t->separator;
+    if (!*last) {
+        m->at++;
+    } else {
+        (void)mt_measuring_newline(m);
+    }
+    *to = '\0';
+    return MT_OK;
 }
 
-/* [sign] digits [. digits] [exponent]; no "nan", no hexadecimal digits. */
-static bool is_decimal(const char *s, size_t length)
+/* Skip comments and empty lines; false: end of the text. */
+static bool next_line(const table *t)
 {
-    size_t at = 0;
-    skip_sign(s, length, &at);
-    size_t n = digits(s, length, &at);
-    if (at < length && s[at] == '.') {
-        at++;
-        n += digits(s, length, &at);
+    mt_measuring *const m = t->m;
+    while (m->at < m->end) {
+        const char *s = m->at;
+        while (s < m->end && (*s == ' ' || *s == '\t') && *s != t->separator) {
+            s++;
+        }
+        if (s < m->end && *s != '#' && *s != '\n' && *s != '\r') {
+            return true;
+        }
+        while (m->at < m->end && *m->at != '\n' && *m->at != '\r') {
+            m->at++;
+        }
+        (void)mt_measuring_newline(m);
     }
-    if (n > 0 && at < length && (s[at] == 'e' || s[at] == 'E')) {
-        at++;
-        skip_sign(s, length, &at);
-        n = digits(s, length, &at);
-    }
-    return n > 0 && at == length;
+    return false;
 }
 
-bool mt_measuring_number(const char *text, size_t length, double *out)
+static mt_status read_record(table *t, int *n)
 {
-    char own[NUMBER_TEXT];
-    *out = nan("");
-    if (length == 0 || length >= sizeof own) {
-        return false;
+    bool last = false;
+    *n = 0;
+    while (!last) {
+        if (*n == FIELDS_MOST) {
+            return mt_measuring_refuse(t->m, t->m->line, mt_measuring_column(t->m),
+                                       "more than %d columns", FIELDS_MOST);
+        }
+        MT_TRY(read_field(t, &t->fields[(*n)++], &last));
     }
-    for (size_t i = 0; i < length; i++) {
-        const bool power = text[i] == 'D' || text[i] == 'd';
-        own[i] = (char)(power ? 'E' : text[i]);
-    }
-    own[length] = '\0';
-    if (!is_decimal(own, length)) {
-        return false;
-    }
-    *out = strtod(own, NULL);
-    return isfinite(*out);
+    return MT_OK;
 }
 
-mt_measured_response *mt_measuring_response(mt_measuring *m)
+/* The separator: the candidate that is most frequent in the line of names, outside of
+ * quotes. */
+static char separator_of(const mt_measuring *m)
 {
-    mt_measurement *const out = m->out;
-    mt_measured_response *const list = mt_arena_grow(m->mem, out->responses, out->n_responses,
-                                                     &out->cap_responses, sizeof *list);
-    if (list == NULL) {
-        return NULL;
+    static const char known[] = ",;\t";
+    int count[sizeof known - 1] = {0};
+    bool quoted = false;
+    for (const char *s = m->at; s < m->end && *s != '\n' && *s != '\r'; s++) {
+        const char *const at = strchr(known, *s);
+        quoted = quoted != (*s == '"');
+        if (!quoted && at != NULL && *at != '\0') {
+            count[at - known]++;
+        }
     }
-    out->responses = list;
-    list[out->n_responses] = (mt_measured_response){.si = 1.0};
-    return &list[out->n_responses++];
+    const int commas = count[0];
+    return (char)(count[1] > commas ? ';' : count[2] > commas ? '\t' : ',');
 }
 
-mt_status mt_measuring_add(mt_measuring *m, mt_measured_response *r,
-                           const mt_measured_line *line, int column)
+static bool same_name(const char *a, const char *b)
 {
-    const double f = line->frequency_hz;
-    if (!(f >= 0.0)) {
-        return mt_measuring_refuse(m, line->line, column,
-                                   "a frequency must not be below 0, as %.10g Hz is", f);
+    for (; *a != '\0' && *b != '\0'; a++, b++) {
+        const char lower = (char)(*a >= 'A' && *a <= 'Z' ? *a - 'A' + 'a' : *a);
+        if (lower != *b) {
+            return false;
+        }
     }
-    if (r->n_lines > 0 && !(f > r->lines[r->n_lines - 1].frequency_hz)) {
-        return mt_measuring_refuse(m, line->line, column,
-                                   "frequencies must ascend: %.10g Hz follows %.10g Hz", f,
-                                   r->lines[r->n_lines - 1].frequency_hz);
+    return *a == *b;
+}
+
+static mt_status missing(table *t, int column, const char *what)
+{
+    const char *names[FIELDS_MOST];
+    for (int i = 0; i < t->n; i++) {
+        names[i] = t->fields[i].text;
     }
-    if (f == 0.0) {
+    const char *const near = mt_text_nearest(NAMES[column], names, t->n);
+    const field *const first = &t->fields[0];
+    return near == NULL
+               ? mt_measuring_refuse(t->m, first->line, 1, "no column is called %s", what)
+               : mt_measuring_refuse(t->m, first->line, 1,
+                                     "no column is called %s; is it \"%s\"?", what, near);
+}
+
+static mt_status read_names(table *t)
+{
+    for (int c = 0; c < COLUMN_COUNT; c++) {
+        t->column[c] = -1;
+    }
+    MT_TRY(read_record(t, &t->n));
+    for (int i = 0; i < t->n; i++) {
+        for (int c = 0; c < COLUMN_COUNT; c++) {
+            if (!same_name(t->fields[i].text, NAMES[c])) {
+                continue;
+            }
+            if (t->column[c] >= 0) {
+                return mt_measuring_refuse(t->m, t->fields[i].line, t->fields[i].column,
+                                           "column \"%s\" is there twice", NAMES[c]);
+            }
+            t->column[c] = i;
+        }
+    }
+    t->re = t->column[REAL] >= 0 ? REAL : t->column[RE] >= 0 ? RE : MAGNITUDE;
+    t->im = t->re == MAGNITUDE ? PHASE : t->column[IMAG] >= 0 ? IMAG : IM;
+    if (t->column[FREQUENCY] < 0) {
+        return missing(t, FREQUENCY, "\"frequency_hz\"");
+    }
+    if (t->column[t->re] < 0) {
+        return missing(t, REAL,
+                       "\"real\" (with \"imag\") or \"magnitude\" (with \"phase_deg\")");
+    }
+    return t->column[t->im] >= 0 ? MT_OK
+           : t->im == PHASE ? missing(t, PHASE, "\"phase_deg\", which goes with \"magnitude\"")
+                            : missing(t, IMAG, "\"imag\", which goes with \"real\"");
+}
+
+/* A number in a field; a comma is a point where it does not separate. */
+static mt_status read_field_number(const table *t, int column, double *out)
+{
+    const field *const f = &t->fields[t->column[column]];
+    char *const comma = t->separator == ',' ? NULL : strchr(f->text, ',');
+    if (comma != NULL) {
+        *comma = '.';
+    }
+    if (mt_measuring_number(f->text, strlen(f->text), out)) {
         return MT_OK;
     }
-    mt_measured_line *const lines =
-        mt_arena_grow(m->mem, r->lines, r->n_lines, &r->cap_lines, sizeof *lines);
-    if (lines != NULL) {
-        r->lines = lines;
-        lines[r->n_lines++] = *line;
+    return *f->text == '\0' ? mt_measuring_refuse(t->m, f->line, f->column,
+                                                  "\"%s\" has no value here", NAMES[column])
+                            : mt_measuring_refuse(t->m, f->line, f->column,
+                                                  "\"%s\" (%.40s) is not a finite number",
+                                                  NAMES[column], f->text);
+}
+
+static mt_status read_line(const table *t, mt_measured_line *out)
+{
+    double a = 0.0;
+    double b = 0.0;
+    *out = (mt_measured_line){.coherence = nan(""), .line = t->fields[0].line};
+    MT_TRY(read_field_number(t, FREQUENCY, &out->frequency_hz));
+    MT_TRY(read_field_number(t, t->re, &a));
+    MT_TRY(read_field_number(t, t->im, &b));
+    const bool polar = t->re == MAGNITUDE;
+    out->re = polar ? a * cos(b * RADIANS_PER_DEG) : a;
+    out->im = polar ? a * sin(b * RADIANS_PER_DEG) : b;
+    const field *const size = &t->fields[t->column[t->re]];
+    if (polar && a < 0.0) {
+        return mt_measuring_refuse(t->m, size->line, size->column,
+                                   "a magnitude must not be below 0, as %.10g is", a);
+    }
+    if (t->column[COHERENCE] < 0) {
+        return MT_OK;
+    }
+    MT_TRY(read_field_number(t, COHERENCE, &out->coherence));
+    const field *const f = &t->fields[t->column[COHERENCE]];
+    return out->coherence >= 0.0 && out->coherence <= 1.0
+               ? MT_OK
+               : mt_measuring_refuse(t->m, f->line, f->column,
+                                     "a coherence is from 0 to 1, not %.10g", out->coherence);
+}
+
+static const char *label(const table *t, int column)
+{
+    const char *const s = t->column[column] < 0 ? "" : t->fields[t->column[column]].text;
+    return *s == '\0' ? NULL : s;
+}
+
+static int compare_optional_texts(const char *a, const char *b)
+{
+    return strcmp(a == NULL ? "" : a, b == NULL ? "" : b);
+}
+
+/* The labels of the line, and those of response i. */
+static int compare_labels(const void *context, const void *key, int i)
+{
+    const mt_measured_response *const r = &((const mt_measuring *)context)->out->responses[i];
+    const table *const t = key;
+    int order = compare_optional_texts(label(t, OUTPUT), r->output);
+    order = order != 0 ? order : compare_optional_texts(label(t, INPUT), r->input);
+    order =
+        order != 0 ? order : compare_optional_texts(label(t, CONFIGURATION), r->configuration);
+    return order != 0 ? order : compare_optional_texts(label(t, UNIT), r->unit);
+}
+
+static const char *copy_label(const table *t, int column)
+{
+    const char *const s = label(t, column);
+    return s == NULL ? NULL : mt_arena_strdup(t->m->mem, s);
+}
+
+enum { RESPONSES_MOST = 10000 };
+
+/* The response of the line, mostly that of the line before, else a new one. Fails: MT_E_INPUT
+ * (too many). */
+static mt_status response_of(table *t, mt_measured_response **out)
+{
+    mt_measuring *const m = t->m;
+    const int last = t->last;
+    t->last = last >= 0 && compare_labels(m, t, last) == 0
+                  ? last
+                  : mt_sorted_find(&t->responses, compare_labels, m, t);
+    if (t->last >= 0) {
+        *out = &m->out->responses[t->last];
+        return MT_OK;
+    }
+    if (m->out->n_responses == RESPONSES_MOST) {
+        return mt_measuring_refuse(m, t->fields[0].line, 1, "more than %d responses",
+                                   RESPONSES_MOST);
+    }
+    t->last = t->responses.n;
+    *out = mt_sorted_add(&t->responses, m->mem, compare_labels, m, t) ? mt_measuring_response(m)
+                                                                      : NULL;
+    if (*out != NULL) {
+        (*out)->configuration = copy_label(t, CONFIGURATION);
+        (*out)->input = copy_label(t, INPUT);
+        (*out)->output = copy_label(t, OUTPUT);
+        (*out)->unit = copy_label(t, UNIT);
     }
     return mt_arena_check(m->mem, m->err);
+}
+
+static mt_status read_csv(mt_measuring *m)
+{
+    static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8 */
+    table t = {.m = m, .last = -1};
+    if (m->end - m->at >= 3 && memcmp(m->at, mark, 3) == 0) {
+        m->at += 3;
+        m->start_of_line = m->at;
+    }
+    if (!next_line(&t)) {
+        return mt_measuring_refuse(m, m->line, 1, "the table is empty");
+    }
+    t.separator = separator_of(m);
+    MT_TRY(read_names(&t));
+    while (next_line(&t)) {
+        mt_measured_line line;
+        mt_measured_response *r = NULL;
+        int n = 0;
+        MT_TRY(read_record(&t, &n));
+        if (n != t.n) {
+            return mt_measuring_refuse(m, t.fields[0].line, 1,
+                                       "%d fields, where the line of names has %d", n, t.n);
+        }
+        MT_TRY(read_line(&t, &line));
+        MT_TRY(response_of(&t, &r));
+        MT_TRY(mt_measuring_add(m, r, &line, t.fields[t.column[FREQUENCY]].column));
+    }
+    return m->out->n_responses > 0
+               ? MT_OK
+               : mt_measuring_refuse(m, m->line, 1, "the table has names, and no lines");
 }
 
 /* True where the text begins as a universal file, with a line "-1". */
@@ -155,7 +398,7 @@ static mt_status read_measurement_text(void *context, mt_err *err)
                                    "this is not text: neither a table (CSV) nor a universal "
                                    "file, which begins with a line \"-1\"");
     }
-    return mt_read_measurement_csv(m);
+    return read_csv(m);
 }
 
 mt_status mt_measurement_load(const char *path, const mt_io_options *opt, mt_arena *mem,

@@ -11,8 +11,8 @@
 
 #include "expr/kind.h"
 #include "io/file.h"
-#include "io/json_print.h"
-#include "io/read_units.h"
+#include "io/json.h"
+#include "io/reader.h"
 #include "model/names.h"
 #include "model/resolve.h"
 #include "model/setting.h"

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "io/read_units.h"
+#include "io/reader.h"
 #include "model/names.h"
 
 mt_num mt_read_num_in(mt_model_reader *mr, mt_addr value, const mt_unit *unit)

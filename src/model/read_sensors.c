@@ -5,7 +5,7 @@
 #include <limits.h>
 #include <string.h>
 
-#include "io/read_units.h"
+#include "io/reader.h"
 
 #define SENSOR_KEYS(X)                                                                         \
     X(SENSOR_NAME, "name", TEXT, true, NONE,                                                   \

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "io/file.h"
-#include "io/json_print.h"
+#include "io/json.h"
 #include "io/reader.h"
 #include "result/folder.h"
 #include "result/result.h"

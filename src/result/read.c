@@ -15,7 +15,6 @@
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/json.h"
-#include "io/json_print.h"
 #include "io/reader.h"
 #include "result/folder.h"
 #include "study/study.h"

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "io/file.h"
-#include "io/json_print.h"
-#include "io/read_units.h"
+#include "io/json.h"
+#include "io/reader.h"
 #include "model/values.h"
 #include "study/check.h"
 #include "study/reader.h"

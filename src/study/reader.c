@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "io/file.h"
-#include "io/read_units.h"
+#include "io/reader.h"
 #include "model/values.h"
 
 mt_study_reader *mt_study_reader_of(mt_reader *r)

@@ -14,7 +14,7 @@
 #include "base/text.h"
 #include "environment/aircraft.h"
 #include "environment/vibration.h"
-#include "io/shipped.h"
+#include "io/file.h"
 #include "study/check.h"
 #include "study/reader.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "io/json_print.h"
+#include "io/json.h"
 
 void mt_study_delete(mt_study *study)
 {

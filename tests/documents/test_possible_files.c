@@ -19,7 +19,6 @@
 #include "environment/vibration.h"
 #include "io/file.h"
 #include "io/json.h"
-#include "io/json_print.h"
 #include "io/options.h"
 #include "mt_test.h"
 #include "study/read.h"

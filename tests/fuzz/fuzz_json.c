@@ -5,7 +5,6 @@
  */
 #include "common/fuzz.h"
 #include "io/json.h"
-#include "io/json_print.h"
 #include "model/read.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

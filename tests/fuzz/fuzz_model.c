@@ -11,7 +11,6 @@
 #include "answer/warnings.h"
 #include "common/fuzz.h"
 #include "io/json.h"
-#include "io/json_print.h"
 #include "linalg/dense.h"
 #include "mechanics/info.h"
 #include "mechanics/sweep.h"

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/json_print.h"
+#include "io/json.h"
 
 typedef struct verdict {
     bool accepted;

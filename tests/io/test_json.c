@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/json_print.h"
-#include "io/scan.h"
+#include "io/json.h"
 #include "mt_refusals.h"
 
 /* What the parser says about a text: all diagnostics, "" where there are none. Owned by the

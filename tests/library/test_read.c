@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "io/files.h"
+#include "io/file.h"
 #include "mt_test.h"
 
 /* A pendulum: one parameter, one configuration. */
