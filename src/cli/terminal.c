@@ -720,8 +720,8 @@ static const mt_field PROGRESS_FIELDS[] = {
         "What the step consists of: goals, first values (of starts), starts, ends of "
         "searches, mode placements, combinations, lots of combinations, boxes of "
         "combinations, changes of the question, designs, designs decided (by a proof), "
-        "points, points again (from their neighbours), equations, order of the bodies, "
-        "matrices of the bodies, iterations."),
+        "points, stretches of points, points again (from their neighbours), equations, order "
+        "of the bodies, matrices of the bodies, iterations."),
     MT_F_LONG("done", view.done, "How many of them are done."),
     MT_F_LONG_OR_NULL("total", view.total, 1, "Of how many."),
     MT_F_NUMBER_OR_NULL(
