@@ -110,44 +110,63 @@ static double damped_hz(const mt_damped_modes *d, int i)
     return d->im[i] > 0.0 ? mt_damped_hz(d, i) : nan("");
 }
 
-/* Columns and rows; configuration NULL: no such column. */
-static void damped_columns(mt_table *t, bool with_configuration)
-{
-    if (with_configuration) {
-        mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
-    }
-    mt_table_column(t, "damped mode", "index", MT_ALIGN_RIGHT);
-    mt_table_column(t, "kind", "kind", MT_ALIGN_LEFT);
-    mt_table_column(t, "natural [Hz]", "natural_frequency_hz", MT_ALIGN_POINT);
-    mt_table_column(t, "damped [Hz]", "damped_frequency_hz", MT_ALIGN_POINT);
-    mt_table_column(t, "damping ratio [%]", "damping_ratio_percent", MT_ALIGN_POINT);
-    mt_table_column(t, "decay [1/s]", "decay_per_s", MT_ALIGN_POINT);
-    mt_table_column(t, "residual", "residual", MT_ALIGN_POINT);
-}
+/* A damped mode. */
+typedef struct damped_row {
+    int index; /* 0: none */
+    const char *kind;
+    double natural_hz;
+    double natural_error_hz; /* NaN: not bounded */
+    double damped_hz;
+    double ratio_percent;
+    double decay_per_s;
+    double residual;
+} damped_row;
 
-static void damped_rows(mt_table *t, const mt_damped_modes *d, int count,
-                        const char *configuration)
+#define THIS damped_row
+static const mt_field damped_fields[] = {
+    MT_F_COUNT_OR_NULL("index", index, 1,
+                       "Number among the oscillating modes, from 1; null: none."),
+    MT_F_TEXT(
+        "kind", kind,
+        "\"oscillating\", \"overdamped\", \"rigid_body\", \"unstable\" or \"undecided\"."),
+    MT_F_NUMBER_OR_NULL("natural_frequency_hz", natural_hz,
+                        "Natural frequency: the size of the pole."),
+    MT_F_NUMBER_OR_NULL("natural_frequency_error_hz", natural_error_hz,
+                        "Bound of its error; null: of all modes, none."),
+    MT_F_NUMBER_OR_NULL("damped_frequency_hz", damped_hz,
+                        "Frequency of its oscillation; null: it does not oscillate."),
+    MT_F_NUMBER_OR_NULL("damping_ratio_percent", ratio_percent,
+                        "Damping ratio, in per cent of the critical damping."),
+    MT_F_NUMBER_OR_NULL("decay_per_s", decay_per_s, "Rate at which it decays."),
+    MT_F_NUMBER("residual", residual, "Residual relative to rounding."),
+};
+static const mt_record damped_record = MT_F_RECORD_OF(damped_fields, NULL, NULL);
+static const mt_record_column damped_columns[] = {
+    MT_R_COLUMN(index, "damped mode", 0, MT_IN_TABLES),
+    MT_R_COLUMN(kind, "kind", 0, MT_IN_TABLES),
+    MT_R_COLUMN(natural_hz, "natural [Hz]", DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(damped_hz, "damped [Hz]", DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(ratio_percent, "damping ratio [%]", DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(decay_per_s, "decay [1/s]", DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(residual, "residual", RATIO_DIGITS, MT_IN_TABLES),
+};
+static const mt_record_table damped_rows = MT_R_TABLE_OF(damped_record, damped_columns);
+#undef THIS
+
+/* for_people: its kind in words. */
+static damped_row damped_row_of(const mt_damped_modes *d, int i, bool for_people)
 {
-    for (int i = 0; i < d->count; i++) {
-        char text[24];
-        const int index = index_of(d, i);
-        if (!is_within_count(d, i, count)) {
-            continue;
-        }
-        (void)mt_snprintf(text, sizeof text, "%d", index);
-        if (configuration != NULL) {
-            mt_table_text(t, configuration);
-        }
-        mt_table_text(t, index > 0 ? text : NULL);
-        mt_table_text(t, configuration == NULL && d->kind[i] == MT_DAMPED_RIGID_BODY
-                             ? "rigid body"
-                             : kind_name(d->kind[i]));
-        mt_table_number(t, decided_value(d, i, mt_damped_natural_hz(d, i)), DIGITS);
-        mt_table_number(t, decided_value(d, i, damped_hz(d, i)), DIGITS);
-        mt_table_number(t, decided_value(d, i, 100.0 * mt_damped_ratio(d, i)), DIGITS);
-        mt_table_number(t, decided_value(d, i, 0.0 - d->re[i]), DIGITS);
-        mt_table_number(t, d->residual[i], RATIO_DIGITS);
-    }
+    const bool rigid = d->kind[i] == MT_DAMPED_RIGID_BODY;
+    return (damped_row){
+        .index = index_of(d, i),
+        .kind = for_people && rigid ? "rigid body" : kind_name(d->kind[i]),
+        .natural_hz = decided_value(d, i, mt_damped_natural_hz(d, i)),
+        .natural_error_hz = nan(""),
+        .damped_hz = decided_value(d, i, damped_hz(d, i)),
+        .ratio_percent = decided_value(d, i, 100.0 * mt_damped_ratio(d, i)),
+        .decay_per_s = decided_value(d, i, 0.0 - d->re[i]),
+        .residual = d->residual[i],
+    };
 }
 
 /* Print the table with its notes. count: oscillating modes to show, 0: all. */
@@ -155,17 +174,33 @@ static void damped_print(const mt_damped_modes *d, int count, mt_text *out)
 {
     mt_table t = mt_table_default();
     int overdamped = 0;
-    damped_columns(&t, false);
-    damped_rows(&t, d, count, NULL);
+    mt_table_record_columns(&t, &damped_rows, MT_IN_TEXT);
+    for (int i = 0; i < d->count; i++) {
+        const damped_row row = damped_row_of(d, i, true);
+        if (is_within_count(d, i, count)) {
+            mt_table_record_row(&t, &damped_rows, MT_IN_TEXT, &row);
+        }
+        overdamped += d->kind[i] == MT_DAMPED_OVERDAMPED ? 1 : 0;
+    }
     mt_text_add(out, "\n");
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
-    for (int i = 0; i < d->count; i++) {
-        overdamped += d->kind[i] == MT_DAMPED_OVERDAMPED ? 1 : 0;
-    }
     if (overdamped > 0) {
         mt_text_addf(out, "  %d real root%s: %s without oscillation.\n", overdamped,
                      overdamped == 1 ? "" : "s", overdamped == 1 ? "it decays" : "they decay");
+    }
+}
+
+/* Rows of CSV, each behind its configuration. */
+static void damped_csv(const mt_damped_modes *d, int count, const char *configuration,
+                       mt_table *t)
+{
+    for (int i = 0; i < d->count; i++) {
+        const damped_row row = damped_row_of(d, i, false);
+        if (is_within_count(d, i, count)) {
+            mt_table_text(t, configuration);
+            mt_table_record_row(t, &damped_rows, MT_IN_CSV, &row);
+        }
     }
 }
 
@@ -175,31 +210,13 @@ static void damped_json(const mt_damped_modes *d, const double *error, int count
 {
     mt_json_open(w, "damped_modes", '[');
     for (int i = 0; i < d->count; i++) {
-        const int index = index_of(d, i);
-        if (!is_within_count(d, i, count)) {
-            continue;
+        damped_row row = damped_row_of(d, i, false);
+        row.natural_error_hz = error == NULL ? nan("") : error[i] * mt_damped_natural_hz(d, i);
+        if (is_within_count(d, i, count)) {
+            mt_json_open(w, NULL, '{');
+            mt_record_put(w, &damped_record, &row);
+            mt_json_close(w);
         }
-        mt_json_open(w, NULL, '{');
-        if (index > 0) {
-            mt_json_put_integer(w, "index", index);
-        } else {
-            mt_json_put_null(w, "index");
-        }
-        mt_json_put_string(w, "kind", kind_name(d->kind[i]));
-        mt_json_put_number(w, "natural_frequency_hz",
-                           decided_value(d, i, mt_damped_natural_hz(d, i)));
-        if (error != NULL) {
-            mt_json_put_number(w, "natural_frequency_error_hz",
-                               error[i] * mt_damped_natural_hz(d, i));
-        } else {
-            mt_json_put_null(w, "natural_frequency_error_hz");
-        }
-        mt_json_put_number(w, "damped_frequency_hz", decided_value(d, i, damped_hz(d, i)));
-        mt_json_put_number(w, "damping_ratio_percent",
-                           decided_value(d, i, 100.0 * mt_damped_ratio(d, i)));
-        mt_json_put_number(w, "decay_per_s", decided_value(d, i, 0.0 - d->re[i]));
-        mt_json_put_number(w, "residual", d->residual[i]);
-        mt_json_close(w);
     }
     mt_json_close(w);
 }
@@ -377,27 +394,94 @@ typedef struct view {
     mt_warning_list warning_list;
 } view;
 
-static void json_mode(mt_json_writer *w, const view *v, int i)
+/* A mode. */
+typedef struct mode_row {
+    int index; /* of vibration modes; 0: none */
+    const char *name;
+    double hz;
+    double error_hz;
+    const char *kind;
+    double omega_squared;
+    double omega_squared_error;
+    int repeated;
+    double residual;
+    double orthogonality;
+} mode_row;
+
+/* Among columns for people: where an error is large enough to be shown. */
+enum { IN_ROUGH = MT_IN_OWN };
+
+#define THIS mode_row
+static const mt_field mode_fields[] = {
+    MT_F_COUNT_OR_NULL("index", index, 1,
+                       "Number among the vibration modes, from 1; null: none."),
+    MT_F_TEXT_OR_NULL("name", name, "Name that the model gives it."),
+    MT_F_NUMBER("frequency_hz", hz, "Natural frequency."),
+    MT_F_NUMBER("frequency_error_hz", error_hz, "Bound of its error."),
+    MT_F_TEXT("kind", kind, "\"flexible\", \"rigid_body\", \"unstable\" or \"undecided\"."),
+    MT_F_NUMBER("omega_squared", omega_squared, "Eigenvalue [rad^2/s^2]."),
+    MT_F_NUMBER("omega_squared_error", omega_squared_error, "Bound of its error [rad^2/s^2]."),
+    MT_F_COUNT("repeated", repeated, 1, "How many modes share its frequency."),
+    MT_F_NUMBER("residual", residual, "Residual relative to rounding."),
+    MT_F_NUMBER("orthogonality", orthogonality, "Loss of orthogonality relative to rounding."),
+};
+static const mt_record mode_record = MT_F_RECORD_OF(mode_fields, NULL, NULL);
+static const mt_record_column mode_columns[] = {
+    MT_R_COLUMN(index, "mode", 0, MT_IN_TABLES),
+    MT_R_COLUMN(kind, "kind", 0, MT_IN_TABLES),
+    MT_R_COLUMN(hz, "frequency [Hz]", HZ_DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(error_hz, "error [Hz]", RATIO_DIGITS, MT_IN_CSV | IN_ROUGH),
+    MT_R_COLUMN(name, "name", 0, MT_IN_TABLES),
+    MT_R_COLUMN(residual, "residual", RATIO_DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(orthogonality, "orthogonality", RATIO_DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(omega_squared, "omega^2 [rad^2/s^2]", HZ_DIGITS, MT_IN_CSV),
+};
+static const mt_record_table mode_rows = MT_R_TABLE_OF(mode_record, mode_columns);
+#undef THIS
+
+/* True where the error of this mode's frequency is large enough to be shown. */
+static bool is_rough(const mt_modes *m, int i)
+{
+    return m->kind[i] == MT_MODE_FLEXIBLE &&
+           mt_modal_error_hz(m, i) > TOLD_ERROR * mt_modal_hz(m, i);
+}
+
+static bool any_rough(const view *v)
+{
+    bool rough = false;
+    for (int i = 0; i < v->shown; i++) {
+        rough = rough || is_rough(v->m, i);
+    }
+    return rough;
+}
+
+/* for_people: its kind in words, and no error that is not large. */
+static mode_row mode_row_of(const view *v, int i, bool for_people)
 {
     const mt_modes *const m = v->m;
     const int index = index_of_mode(m, i);
     int size = 1;
     (void)mt_modal_cluster(m, i, &size);
+    return (mode_row){
+        .index = index,
+        .name = mt_mode_name(v->s, v->c, index),
+        .hz = mt_modal_hz(m, i),
+        .error_hz = for_people && !is_rough(m, i) ? nan("") : mt_modal_error_hz(m, i),
+        .kind = for_people && m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
+                                                               : mode_kind_name(m->kind[i]),
+        .omega_squared = m->lambda[i],
+        .omega_squared_error = m->error[i],
+        .repeated = size,
+        .residual = m->residual[i],
+        .orthogonality = m->orthogonality[i],
+    };
+}
+
+static void json_mode(mt_json_writer *w, const view *v, int i)
+{
+    const mode_row row = mode_row_of(v, i, false);
     mt_json_open(w, NULL, '{');
-    if (index > 0) {
-        mt_json_put_integer(w, "index", index);
-    } else {
-        mt_json_put_null(w, "index");
-    }
-    mt_json_put_string(w, "name", mt_mode_name(v->s, v->c, index));
-    mt_json_put_number(w, "frequency_hz", mt_modal_hz(m, i));
-    mt_json_put_number(w, "frequency_error_hz", mt_modal_error_hz(m, i));
-    mt_json_put_string(w, "kind", mode_kind_name(m->kind[i]));
-    mt_json_put_number(w, "omega_squared", m->lambda[i]);
-    mt_json_put_number(w, "omega_squared_error", m->error[i]);
-    mt_json_put_integer(w, "repeated", size);
-    mt_json_put_number(w, "residual", m->residual[i]);
-    mt_json_put_number(w, "orthogonality", m->orthogonality[i]);
+    mt_record_put(w, &mode_record, &row);
     if (v->shapes.n > 0) {
         mt_json_open(w, "shape", '{');
         for (int k = 0; k < v->shapes.n; k++) {
@@ -491,78 +575,41 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     return MT_OK;
 }
 
-/* True where the error of this mode's frequency is large enough to be shown. */
-static bool is_rough(const mt_modes *m, int i)
-{
-    return m->kind[i] == MT_MODE_FLEXIBLE &&
-           mt_modal_error_hz(m, i) > TOLD_ERROR * mt_modal_hz(m, i);
-}
-
-static bool any_rough(const view *v)
-{
-    bool rough = false;
-    for (int i = 0; i < v->shown; i++) {
-        rough = rough || is_rough(v->m, i);
-    }
-    return rough;
-}
-
-static mt_table table_new(bool with_configuration, bool with_error, int n_shapes,
-                          const mode_shapes *shapes)
+/* A table of CSV: each row behind its configuration, its shape behind it. */
+static mt_table csv_table(const mode_shapes *shapes)
 {
     mt_table t = mt_table_default();
-    if (with_configuration) {
-        mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
-    }
-    mt_table_column(&t, "mode", "index", MT_ALIGN_RIGHT);
-    mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
-    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
-    if (with_error) {
-        mt_table_column(&t, "error [Hz]", "frequency_error_hz", MT_ALIGN_POINT);
-    }
-    mt_table_column(&t, "name", "name", MT_ALIGN_LEFT);
-    mt_table_column(&t, "residual", "residual", MT_ALIGN_POINT);
-    mt_table_column(&t, "orthogonality", "orthogonality", MT_ALIGN_POINT);
-    if (with_configuration) {
-        mt_table_column(&t, "omega^2 [rad^2/s^2]", "omega_squared", MT_ALIGN_POINT);
-    }
-    for (int k = 0; k < n_shapes; k++) {
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_record_columns(&t, &mode_rows, MT_IN_CSV);
+    for (int k = 0; k < shapes->n; k++) {
         mt_table_column(&t, shapes->name[k], shapes->name[k], MT_ALIGN_POINT);
     }
     return t;
 }
 
-static void fill_table(mt_table *t, const view *v, bool csv)
+static void csv_rows(const view *v, mt_table *t)
 {
-    const mt_modes *const m = v->m;
-    const bool with_error = csv || any_rough(v);
     for (int i = 0; i < v->shown; i++) {
-        const int index = index_of_mode(m, i);
-        char text[24];
-        (void)mt_snprintf(text, sizeof text, "%d", index);
-        if (csv) {
-            mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
-        }
-        mt_table_text(t, index > 0 ? text : NULL);
-        mt_table_text(t, csv ? mode_kind_name(m->kind[i])
-                             : (m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
-                                                                 : mode_kind_name(m->kind[i])));
-        mt_table_number(t, mt_modal_hz(m, i), HZ_DIGITS);
-        if (with_error && (csv || is_rough(m, i))) {
-            mt_table_number(t, mt_modal_error_hz(m, i), RATIO_DIGITS);
-        } else if (with_error) {
-            mt_table_text(t, NULL);
-        }
-        mt_table_text(t, mt_mode_name(v->s, v->c, index));
-        mt_table_number(t, m->residual[i], RATIO_DIGITS);
-        mt_table_number(t, m->orthogonality[i], RATIO_DIGITS);
-        if (csv) {
-            mt_table_number(t, m->lambda[i], HZ_DIGITS);
-            for (int k = 0; k < v->shapes.n; k++) {
-                mt_table_number(t, shapes_shown(&v->shapes, k, i), HZ_DIGITS);
-            }
+        const mode_row row = mode_row_of(v, i, false);
+        mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
+        mt_table_record_row(t, &mode_rows, MT_IN_CSV, &row);
+        for (int k = 0; k < v->shapes.n; k++) {
+            mt_table_number(t, shapes_shown(&v->shapes, k, i), HZ_DIGITS);
         }
     }
+}
+
+static void print_modes(const view *v, mt_text *out)
+{
+    const unsigned in = MT_IN_TEXT | (any_rough(v) ? (unsigned)IN_ROUGH : 0U);
+    mt_table t = mt_table_default();
+    mt_table_record_columns(&t, &mode_rows, in);
+    for (int i = 0; i < v->shown; i++) {
+        const mode_row row = mode_row_of(v, i, true);
+        mt_table_record_row(&t, &mode_rows, in, &row);
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
 }
 
 /* Print shapes with rows of channels and columns of modes, as a mechanism has more sensors than
@@ -662,12 +709,9 @@ static void write_few_damped(const mt_lowest_damped *few, mt_text *out)
 
 static void text_view(const view *v, mt_text *out)
 {
-    mt_table t = table_new(false, any_rough(v), 0, NULL);
-    fill_table(&t, v, false);
     mt_text_addf(out, "%s\n", mt_loaded_model_configuration(v->s, v->c));
     mt_cli_print_warnings(&v->warning_list, out);
-    mt_table_print(&t, 2, mt_terminal_width(), out);
-    mt_table_free(&t);
+    print_modes(v, out);
     write_solution_notes(v, out);
     if (v->shapes.n > 0) {
         print_shapes(v, out);
@@ -687,6 +731,7 @@ typedef struct sink {
     mt_text *out;
     mt_json_writer *w;
     mt_table table; /* CSV */
+    int channels;   /* in its columns */
     mt_run run;     /* of all configurations */
 } sink;
 
@@ -695,21 +740,23 @@ static mt_status csv_view(sink *to, const view *v)
     if (v->with_damping) { /* a table of its own kind: the damped modes alone */
         if (to->table.n_columns == 0 && !to->table.failed) {
             to->table = mt_table_default();
-            damped_columns(&to->table, true);
+            mt_table_column(&to->table, "configuration", "configuration", MT_ALIGN_LEFT);
+            mt_table_record_columns(&to->table, &damped_rows, MT_IN_CSV);
         }
-        damped_rows(&to->table, v->damped, v->count, mt_loaded_model_configuration(v->s, v->c));
+        damped_csv(v->damped, v->count, mt_loaded_model_configuration(v->s, v->c), &to->table);
         return MT_OK;
     }
     if (to->table.n_columns == 0 && !to->table.failed) {
-        to->table = table_new(true, true, v->shapes.n, &v->shapes);
+        to->table = csv_table(&v->shapes);
+        to->channels = v->shapes.n;
     }
     if (to->table.failed) {
         return MT_OK; /* the output that the table goes into tells */
     }
-    if (to->table.n_columns != 9 + v->shapes.n) {
+    if (to->channels != v->shapes.n) {
         return MT_E_USAGE;
     }
-    fill_table(&to->table, v, true);
+    csv_rows(v, &to->table);
     return MT_OK;
 }
 
@@ -1089,24 +1136,62 @@ static double hz(const side *x, int mode)
     return mt_modal_hz(&x->a->modes, x->position[mode]);
 }
 
-static mt_table pairs_table(const comparison *c)
+/* A mode of A and the mode of B that it is paired with. */
+typedef struct pair_row {
+    int a;
+    int b;
+    double mac;
+    double a_hz;
+    double b_hz;
+    double difference_percent;
+} pair_row;
+
+#define THIS pair_row
+static const mt_field pair_fields[] = {
+    MT_F_COUNT("a", a, 1, "Mode of A, from 1."),
+    MT_F_COUNT("b", b, 1, "Mode of B, from 1."),
+    MT_F_NUMBER("mac", mac, "Modal assurance criterion of both."),
+    MT_F_NUMBER("frequency_a_hz", a_hz, "Natural frequency of A."),
+    MT_F_NUMBER("frequency_b_hz", b_hz, "Natural frequency of B."),
+    MT_F_NUMBER_OR_NULL(NULL, difference_percent, "Difference of B from A."),
+};
+static const mt_record pair_record = MT_F_RECORD_OF(pair_fields, NULL, NULL);
+static const mt_record_column pair_columns[] = {
+    MT_R_COLUMN(a, "A", 0, MT_IN_TABLES),
+    MT_R_COLUMN(b, "B", 0, MT_IN_TABLES),
+    MT_R_COLUMN(mac, "MAC", MAC_DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(a_hz, "A [Hz]", DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(b_hz, "B [Hz]", DIGITS, MT_IN_TABLES),
+    MT_R_CHANGE(difference_percent, "B - A [%]", "difference_percent", 3, MT_IN_TABLES),
+};
+static const mt_record_table pair_rows = MT_R_TABLE_OF(pair_record, pair_columns);
+#undef THIS
+
+/* The pair of mode i of A; false where it has none. */
+static bool pair_row_of(const comparison *c, int i, pair_row *out)
+{
+    const int j = c->pair[i];
+    if (j >= 0) {
+        *out = (pair_row){
+            .a = i + 1,
+            .b = j + 1,
+            .mac = c->mac[i + ((ptrdiff_t)j * c->a.n)],
+            .a_hz = hz(&c->a, i),
+            .b_hz = hz(&c->b, j),
+            .difference_percent = 100.0 * (hz(&c->b, j) / hz(&c->a, i) - 1.0),
+        };
+    }
+    return j >= 0;
+}
+
+static mt_table pairs_table(const comparison *c, unsigned in)
 {
     mt_table t = mt_table_default();
-    mt_table_column(&t, "A", "a", MT_ALIGN_RIGHT);
-    mt_table_column(&t, "B", "b", MT_ALIGN_RIGHT);
-    mt_table_column(&t, "MAC", "mac", MT_ALIGN_POINT);
-    mt_table_column(&t, "A [Hz]", "frequency_a_hz", MT_ALIGN_POINT);
-    mt_table_column(&t, "B [Hz]", "frequency_b_hz", MT_ALIGN_POINT);
-    mt_table_column(&t, "B - A [%]", "difference_percent", MT_ALIGN_POINT);
+    pair_row row;
+    mt_table_record_columns(&t, &pair_rows, in);
     for (int i = 0; i < c->a.n; i++) {
-        const int j = c->pair[i];
-        if (j >= 0) {
-            mt_table_integer(&t, i + 1);
-            mt_table_integer(&t, j + 1);
-            mt_table_number(&t, c->mac[i + ((ptrdiff_t)j * c->a.n)], MAC_DIGITS);
-            mt_table_number(&t, hz(&c->a, i), DIGITS);
-            mt_table_number(&t, hz(&c->b, j), DIGITS);
-            mt_table_change(&t, 100.0 * (hz(&c->b, j) / hz(&c->a, i) - 1.0), 3);
+        if (pair_row_of(c, i, &row)) {
+            mt_table_record_row(&t, &pair_rows, in, &row);
         }
     }
     return t;
@@ -1143,15 +1228,11 @@ static mt_status write_mac_json(comparison *c, mt_json_writer *w, mt_err *err)
 {
     mt_json_open(w, NULL, '{');
     mt_json_open(w, "pairs", '[');
+    pair_row row;
     for (int i = 0; i < c->a.n; i++) {
-        const int j = c->pair[i];
-        if (j >= 0) {
+        if (pair_row_of(c, i, &row)) {
             mt_json_open(w, NULL, '{');
-            mt_json_put_integer(w, "a", i + 1);
-            mt_json_put_integer(w, "b", j + 1);
-            mt_json_put_number(w, "mac", c->mac[i + ((ptrdiff_t)j * c->a.n)]);
-            mt_json_put_number(w, "frequency_a_hz", hz(&c->a, i));
-            mt_json_put_number(w, "frequency_b_hz", hz(&c->b, j));
+            mt_record_put(w, &pair_record, &row);
             mt_json_close(w);
         }
     }
@@ -1226,7 +1307,7 @@ static mt_status write_mac_text(comparison *c, mt_text *out, mt_err *err)
     write_side(&c->a, out);
     write_side(&c->b, out);
     mt_text_addf(out, "%d common sensor channels\n\n", c->ns);
-    mt_table t = pairs_table(c);
+    mt_table t = pairs_table(c, MT_IN_TEXT);
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     text_matrix(c, out);
@@ -1254,7 +1335,7 @@ static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err
         MT_TRY(write_mac_json(c, &w, err));
         return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
     case MT_FORMAT_CSV:
-        t = pairs_table(c);
+        t = pairs_table(c, MT_IN_CSV);
         mt_table_csv(&t, out);
         mt_table_free(&t);
         return MT_OK;

@@ -298,32 +298,68 @@ static const char *parameter_of(const response_view *v, int k)
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
 
+/* A peak, a resonance or an antiresonance. */
+typedef struct extreme_row {
+    const char *input;
+    const char *output;
+    const char *kind;
+    double hz;
+    double magnitude;
+    const char *unit;
+    double phase_deg;
+} extreme_row;
+
+#define THIS extreme_row
+static const mt_field extreme_fields[] = {
+    MT_F_UNWRITTEN_TEXT(input), /* JSON has them around the list */
+    MT_F_UNWRITTEN_TEXT(output),
+    MT_F_TEXT("kind", kind, "\"peak\", \"resonance\", \"antiresonance\" or \"minimum\"."),
+    MT_F_NUMBER("frequency_hz", hz, "Where it is."),
+    MT_F_NUMBER_OR_NULL("magnitude", magnitude, "Magnitude of the response; null: infinite."),
+    MT_F_UNWRITTEN_TEXT(unit),
+    MT_F_NUMBER_OR_NULL("phase_deg", phase_deg, "Phase of the output against the input."),
+};
+static const mt_record extreme_record = MT_F_RECORD_OF(extreme_fields, NULL, NULL);
+static const mt_record_column extreme_columns[] = {
+    MT_R_COLUMN(input, "input", 0, MT_IN_TEXT),
+    MT_R_COLUMN(output, "output", 0, MT_IN_TEXT),
+    MT_R_COLUMN(kind, "kind", 0, MT_IN_TEXT),
+    MT_R_COLUMN(hz, "frequency [Hz]", HZ_DIGITS, MT_IN_TEXT),
+    MT_R_COLUMN(magnitude, "magnitude", DIGITS, MT_IN_TEXT),
+    MT_R_COLUMN(unit, "unit", 0, MT_IN_TEXT),
+    MT_R_COLUMN(phase_deg, "phase [deg]", DIGITS, MT_IN_TEXT),
+};
+static const mt_record_table extreme_rows = MT_R_TABLE_OF(extreme_record, extreme_columns);
+#undef THIS
+
+static extreme_row extreme_row_of(const response_view *v, int e, char unit[HEADING_TEXT])
+{
+    const mt_extreme *const x = &v->curve->extremes[e];
+    write_pair_unit(v, x->pair, unit);
+    return (extreme_row){
+        .input = response_input_of(v, x->pair)->name,
+        .output = response_output_of(v, x->pair)->name,
+        .kind = extreme_kind_name(x),
+        .hz = x->w / TWO_PI,
+        .magnitude = magnitude(extreme_of(x)),
+        .unit = unit,
+        .phase_deg = mt_phase_deg(extreme_of(x)),
+    };
+}
+
 static void print_extremes(const response_view *v, mt_text *out)
 {
     mt_table t = mt_table_default();
-    mt_table_column(&t, "input", "input", MT_ALIGN_LEFT);
-    mt_table_column(&t, "output", "output", MT_ALIGN_LEFT);
-    mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
-    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
-    mt_table_column(&t, "magnitude", "magnitude", MT_ALIGN_POINT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
-    mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
+    mt_table_record_columns(&t, &extreme_rows, MT_IN_TEXT);
     for (int k = 0; k < v->n; k++) {
         char heading[HEADING_TEXT];
         (void)mt_snprintf(heading, sizeof heading, "by 1 %% of %s", parameter_of(v, k));
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
     }
     for (int e = 0; e < v->curve->n_extremes; e++) {
-        const mt_extreme *const x = &v->curve->extremes[e];
         char unit[HEADING_TEXT];
-        write_pair_unit(v, x->pair, unit);
-        mt_table_text(&t, response_input_of(v, x->pair)->name);
-        mt_table_text(&t, response_output_of(v, x->pair)->name);
-        mt_table_text(&t, extreme_kind_name(x));
-        mt_table_number(&t, x->w / TWO_PI, HZ_DIGITS);
-        mt_table_number(&t, magnitude(extreme_of(x)), DIGITS);
-        mt_table_text(&t, unit);
-        mt_table_number(&t, mt_phase_deg(extreme_of(x)), DIGITS);
+        const extreme_row row = extreme_row_of(v, e, unit);
+        mt_table_record_row(&t, &extreme_rows, MT_IN_TEXT, &row);
         for (int k = 0; k < v->n; k++) {
             mt_table_change(&t, percent_of(v, e, k), DIGITS);
         }
@@ -472,12 +508,10 @@ static void json_ports(mt_json_writer *w, const char *member, int n, const mt_po
 
 static void json_extreme(const response_view *v, int e, mt_json_writer *w)
 {
-    const mt_extreme *const x = &v->curve->extremes[e];
+    char unit[HEADING_TEXT];
+    const extreme_row row = extreme_row_of(v, e, unit);
     mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "kind", extreme_kind_name(x));
-    mt_json_put_number(w, "frequency_hz", x->w / TWO_PI);
-    mt_json_put_number(w, "magnitude", magnitude(extreme_of(x)));
-    mt_json_put_number(w, "phase_deg", mt_phase_deg(extreme_of(x)));
+    mt_record_put(w, &extreme_record, &row);
     if (v->n > 0) {
         mt_json_open(w, "sensitivities", '[');
         for (int k = 0; k < v->n; k++) {
@@ -600,20 +634,54 @@ static void response_json(const response_view *v, mt_json_writer *w)
     mt_json_close(w);
 }
 
+/* A point of a curve, a row of CSV; JSON has the curves as lists. */
+typedef struct point_row {
+    const char *configuration;
+    const char *input;
+    const char *output;
+    double hz;
+    double re;
+    double im;
+    double magnitude;
+    double phase_deg;
+    double error;
+    const char *unit;
+} point_row;
+
+#define THIS point_row
+static const mt_field point_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Configuration."),
+    MT_F_TEXT("input", input, "What shakes."),
+    MT_F_TEXT("output", output, "What is seen."),
+    MT_F_NUMBER("frequency_hz", hz, "Frequency."),
+    MT_F_NUMBER_OR_NULL("re", re, "Real part of the response."),
+    MT_F_NUMBER_OR_NULL("im", im, "Imaginary part of the response."),
+    MT_F_NUMBER_OR_NULL("magnitude", magnitude, "Magnitude of the response."),
+    MT_F_NUMBER_OR_NULL("phase_deg", phase_deg, "Phase of the output against the input."),
+    MT_F_NUMBER_OR_NULL("error", error, "Bound of the error of the response."),
+    MT_F_TEXT("unit", unit, "Unit of the response."),
+};
+static const mt_record point_record = MT_F_RECORD_OF(point_fields, NULL, NULL);
+static const mt_record_column point_columns[] = {
+    MT_R_COLUMN(configuration, "configuration", 0, MT_IN_CSV),
+    MT_R_COLUMN(input, "input", 0, MT_IN_CSV),
+    MT_R_COLUMN(output, "output", 0, MT_IN_CSV),
+    MT_R_COLUMN(hz, "frequency [Hz]", HZ_DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(re, "re", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(im, "im", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(magnitude, "magnitude", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(phase_deg, "phase [deg]", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(error, "error", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(unit, "unit", 0, MT_IN_CSV),
+};
+static const mt_record_table point_rows = MT_R_TABLE_OF(point_record, point_columns);
+#undef THIS
+
 /* psd: with the columns of --vibration. */
 static mt_table response_csv_table(bool psd)
 {
     mt_table t = mt_table_default();
-    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
-    mt_table_column(&t, "input", "input", MT_ALIGN_LEFT);
-    mt_table_column(&t, "output", "output", MT_ALIGN_LEFT);
-    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
-    mt_table_column(&t, "re", "re", MT_ALIGN_POINT);
-    mt_table_column(&t, "im", "im", MT_ALIGN_POINT);
-    mt_table_column(&t, "magnitude", "magnitude", MT_ALIGN_POINT);
-    mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
-    mt_table_column(&t, "error", "error", MT_ALIGN_POINT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_record_columns(&t, &point_rows, MT_IN_CSV);
     if (psd) {
         response_vibration_columns(&t);
     }
@@ -628,16 +696,19 @@ static void response_csv_rows(const response_view *v, mt_table *t)
         for (int i = 0; i < v->curve->n; i++) {
             const double complex h = value_at(v, p, i);
             const bool has = isfinite(cabs(h));
-            mt_table_text(t, v->configuration);
-            mt_table_text(t, response_input_of(v, p)->name);
-            mt_table_text(t, response_output_of(v, p)->name);
-            mt_table_number(t, v->curve->w[i] / TWO_PI, HZ_DIGITS);
-            mt_table_number(t, has ? creal(h) : nan(""), DIGITS);
-            mt_table_number(t, has ? cimag(h) : nan(""), DIGITS);
-            mt_table_number(t, magnitude(h), DIGITS);
-            mt_table_number(t, mt_phase_deg(h), DIGITS);
-            mt_table_number(t, error_at(v, p, i), DIGITS);
-            mt_table_text(t, unit);
+            const point_row row = {
+                .configuration = v->configuration,
+                .input = response_input_of(v, p)->name,
+                .output = response_output_of(v, p)->name,
+                .hz = v->curve->w[i] / TWO_PI,
+                .re = has ? creal(h) : nan(""),
+                .im = has ? cimag(h) : nan(""),
+                .magnitude = magnitude(h),
+                .phase_deg = mt_phase_deg(h),
+                .error = error_at(v, p, i),
+                .unit = unit,
+            };
+            mt_table_record_row(t, &point_rows, MT_IN_CSV, &row);
             if (v->profiled != NULL) {
                 response_vibration_cells(v, p, i, t);
             }

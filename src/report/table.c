@@ -2,6 +2,7 @@
 /* Tables, and the numbers in them. */
 #include "report/table.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -183,6 +184,127 @@ void mt_table_ratio(mt_table *t, double value, int digits)
 int mt_table_rows(const mt_table *t)
 {
     return t->n_columns == 0 ? 0 : t->n_cells / t->n_columns;
+}
+
+/* Records. */
+
+/* The member that a column shows. A column without one is a bug of its table. */
+static const mt_field *field_of(const mt_record_table *of, const mt_record_column *c)
+{
+    const mt_record *const record = of->record;
+    int i = 0;
+    while (i < record->n - 1 && record->fields[i].offset != c->offset) {
+        i++;
+    }
+    assert(record->fields[i].offset == c->offset);
+    return &record->fields[i];
+}
+
+/* Texts stand at the left, counts at the right, numbers by their points. */
+static mt_align align_of(const mt_field *f)
+{
+    switch (f->type) {
+    case MT_FIELD_COUNT:
+    case MT_FIELD_LONG:
+        return MT_ALIGN_RIGHT;
+    case MT_FIELD_NUMBER:
+        return MT_ALIGN_POINT;
+    case MT_FIELD_FORMAT:
+    case MT_FIELD_TEXT:
+    case MT_FIELD_CHOICE:
+    case MT_FIELD_ENUM:
+    case MT_FIELD_VALUE:
+    case MT_FIELD_FLAG:
+    case MT_FIELD_RECORD:
+    case MT_FIELD_OPTION:
+    case MT_FIELD_LIST:
+    case MT_FIELD_TEXTS:
+    case MT_FIELD_NUMBERS:
+    case MT_FIELD_BY_VARIABLE:
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+    return MT_ALIGN_LEFT;
+}
+
+/* What machines call a column. */
+static const char *member_of(const mt_record_column *c, const mt_field *f)
+{
+    return f->name != NULL ? f->name : c->member != NULL ? c->member : c->heading;
+}
+
+void mt_table_record_columns(mt_table *t, const mt_record_table *of, unsigned in)
+{
+    for (int k = 0; k < of->n; k++) {
+        const mt_record_column *const c = &of->columns[k];
+        const mt_field *const f = field_of(of, c);
+        if ((c->in & in) != 0U) {
+            mt_table_column(t, c->heading, member_of(c, f), align_of(f));
+        }
+    }
+}
+
+static void add_number(mt_table *t, const mt_record_column *c, double value)
+{
+    if (c->with_sign) {
+        mt_table_change(t, value, c->digits);
+    } else {
+        mt_table_number(t, value, c->digits);
+    }
+}
+
+/* A count below its least is none. */
+static void add_count(mt_table *t, const mt_field *f, int value)
+{
+    if (f->nullable && value < f->least) {
+        mt_table_text(t, NULL);
+    } else {
+        mt_table_integer(t, value);
+    }
+}
+
+static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f, const void *at)
+{
+    switch (f->type) {
+    case MT_FIELD_TEXT:
+    case MT_FIELD_CHOICE:
+        mt_table_text(t, mt_record_get_pointer(at));
+        return;
+    case MT_FIELD_NUMBER:
+        add_number(t, c, *(const double *)at);
+        return;
+    case MT_FIELD_COUNT:
+        add_count(t, f, *(const int *)at);
+        return;
+    case MT_FIELD_LONG:
+        mt_table_integer(t, *(const long *)at);
+        return;
+    case MT_FIELD_FLAG:
+        mt_table_text(t, *(const bool *)at ? "true" : "false");
+        return;
+    case MT_FIELD_FORMAT:
+    case MT_FIELD_ENUM:
+    case MT_FIELD_VALUE:
+    case MT_FIELD_RECORD:
+    case MT_FIELD_OPTION:
+    case MT_FIELD_LIST:
+    case MT_FIELD_TEXTS:
+    case MT_FIELD_NUMBERS:
+    case MT_FIELD_BY_VARIABLE:
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+    t->failed = true; /* no cell holds these: no table has them */
+}
+
+void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, const void *item)
+{
+    for (int k = 0; k < of->n; k++) {
+        const mt_record_column *const c = &of->columns[k];
+        if ((c->in & in) != 0U) {
+            add_cell(t, c, field_of(of, c), (const char *)item + c->offset);
+        }
+    }
 }
 
 /* A number as this program and others write it: [+-] digits [. digits] [e [+-] digits]. */

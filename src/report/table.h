@@ -5,7 +5,9 @@
 #include <stddef.h>
 
 #include "base/arena.h"
+#include "base/base.h"
 #include "base/text.h"
+#include "result/record.h"
 
 /*
  * A table that can be printed as aligned text, CSV (RFC 4180) or HTML. Columns come first, then
@@ -63,6 +65,48 @@ void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
 void mt_table_percent(mt_table *t, double value, int digits);
 void mt_table_ratio(mt_table *t, double value, int digits);
 int mt_table_rows(const mt_table *t);
+
+/*
+ * Tables of records (result/record.h): a member's name and type stand in the record, which also
+ * JSON is written by; a column says where it stands, what people read above it, and how many
+ * digits it has.
+ */
+enum { MT_IN_TEXT = 1, MT_IN_CSV = 2, MT_IN_TABLES = MT_IN_TEXT | MT_IN_CSV, MT_IN_OWN = 4 };
+
+typedef struct mt_record_column {
+    size_t offset;       /* of the member in its struct */
+    const char *heading; /* for people, with its unit */
+    const char *member;  /* for machines, of what JSON does not have; NULL: the heading */
+    int digits;          /* of numbers */
+    bool with_sign;
+    unsigned in; /* MT_IN_TEXT, MT_IN_CSV; from MT_IN_OWN on: where the caller says so */
+} mt_record_column;
+
+typedef struct mt_record_table {
+    const mt_record *record;
+    int n;
+    const mt_record_column *columns; /* [n] in their order */
+} mt_record_table;
+
+/* Columns of the struct THIS, and a table of them. */
+#define MT_R_COLUMN(m, heading_, digits_, in_)                                               \
+    {                                                                                        \
+        .offset = offsetof(THIS, m), .heading = (heading_), .digits = (digits_), .in = (in_) \
+    }
+#define MT_R_CHANGE(m, heading_, member_, digits_, in_)                          \
+    {                                                                            \
+        .offset = offsetof(THIS, m), .heading = (heading_), .member = (member_), \
+        .digits = (digits_), .with_sign = true, .in = (in_)                      \
+    }
+#define MT_R_TABLE_OF(record_, columns_)           \
+    {                                              \
+        &(record_), MT_COUNT(columns_), (columns_) \
+    }
+
+/* Add the columns that are in any of these places, and the cells of one struct: texts, numbers,
+ * counts and flags. */
+void mt_table_record_columns(mt_table *t, const mt_record_table *of, unsigned in);
+void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, const void *item);
 
 /* Heading, rule, rows; two blanks between columns, `indent` before the first, none after the
  * last. Empty columns other than the first are left out; columns beyond `width` (0: unlimited)

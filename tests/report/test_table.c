@@ -326,6 +326,77 @@ static void numbers__that_searches_leave_open_are_what_was_asked(mt_test *t)
     }
 }
 
+/* A struct with a member of each kind that a cell can hold, in JSON's order. */
+typedef struct sample {
+    double hz;
+    const char *kind;
+    int index;
+    bool repeated;
+    double change;
+    long steps;
+} sample;
+
+#define THIS sample
+static const mt_field sample_fields[] = {
+    MT_F_NUMBER_OR_NULL("frequency_hz", hz, ""), MT_F_TEXT_OR_NULL("kind", kind, ""),
+    MT_F_COUNT_OR_NULL("index", index, 1, ""),   MT_F_FLAG("repeated", repeated, ""),
+    MT_F_NUMBER_OR_NULL(NULL, change, ""),       MT_F_LONG("steps", steps, "")};
+static const mt_record sample_record = MT_F_RECORD_OF(sample_fields, NULL, NULL);
+static const mt_record_column sample_columns[] = {
+    MT_R_COLUMN(index, "mode", 0, MT_IN_TABLES),
+    MT_R_COLUMN(kind, "its kind", 0, MT_IN_TEXT),
+    MT_R_COLUMN(hz, "frequency [Hz]", 4, MT_IN_TABLES),
+    MT_R_COLUMN(repeated, "repeated", 0, MT_IN_CSV),
+    MT_R_CHANGE(change, "change [%]", "change_percent", 3, MT_IN_CSV | MT_IN_OWN),
+    MT_R_COLUMN(steps, "steps", 0, MT_IN_CSV)};
+static const mt_record_table sample_table = MT_R_TABLE_OF(sample_record, sample_columns);
+#undef THIS
+
+static void record__has_columns_where_they_are_asked_for(mt_test *t)
+{
+    static const sample rows[] = {{.hz = 2.5,
+                                   .kind = "flexible",
+                                   .index = 1,
+                                   .repeated = true,
+                                   .change = 4.0,
+                                   .steps = 7},
+                                  {.hz = -10.25, .change = -1.0, .steps = 12}};
+    static const struct {
+        unsigned in;
+        const char *text;
+        const char *csv;
+    } places[] = {
+        {MT_IN_TEXT,
+         "mode  its kind  frequency [Hz]\n----  --------  --------------\n"
+         "   1  flexible           2.500\n   -  -                -10.25\n",
+         "index,kind,frequency_hz\r\n1,flexible,2.5\r\n,,-10.25\r\n"},
+        {MT_IN_TEXT | MT_IN_OWN,
+         "mode  its kind  frequency [Hz]  change [%]\n----  --------  -------------- "
+         " ----------\n"
+         "   1  flexible           2.500       +4.00\n   -  -                -10.25        "
+         "-1.00\n",
+         "index,kind,frequency_hz,change_percent\r\n1,flexible,2.5,4\r\n,,-10.25,-1\r\n"},
+        {MT_IN_CSV, NULL,
+         "index,frequency_hz,repeated,change_percent,steps\r\n1,2.5,true,4,7\r\n"
+         ",-10.25,false,-1,12\r\n"}};
+    for (int k = 0; k < MT_COUNT(places); k++) {
+        mt_table table = mt_table_default();
+        mt_text out = {.s = NULL};
+        mt_test_row(t, "places %u", places[k].in);
+        mt_table_record_columns(&table, &sample_table, places[k].in);
+        for (int i = 0; i < MT_COUNT(rows); i++) {
+            mt_table_record_row(&table, &sample_table, places[k].in, &rows[i]);
+        }
+        mt_table_csv(&table, &out);
+        CHECK_STR(t, out.s, places[k].csv);
+        mt_text_free(&out);
+        mt_table_print(&table, 0, 0, &out);
+        CHECK_STR(t, out.s, places[k].text == NULL ? out.s : places[k].text);
+        mt_text_free(&out);
+        mt_table_free(&table);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
              MT_TEST(print__leaves_out_what_is_empty), MT_TEST(print__folds_to_the_width),
              MT_TEST(table__aligns_decimal_points_and_counts_characters_not_bytes),
@@ -335,4 +406,5 @@ MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
              MT_TEST(csv__protects_formulas_and_leaves_numbers),
              MT_TEST(csv__has_members_exact_numbers_and_crlf),
              MT_TEST(numbers__that_searches_leave_open_are_what_was_asked),
+             MT_TEST(record__has_columns_where_they_are_asked_for),
              MT_TEST(html__escapes_every_special_character))
