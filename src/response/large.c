@@ -14,7 +14,6 @@
 /* A generalised force on the bodies, and its projections. */
 typedef struct force {
     mt_lowest_push push;
-    double loss;    /* loss factor of a spring's force: the force times 1 + i loss */
     double *in_all; /* [n] in the coordinates of the problem */
     mt_left_part left;
 } force;
@@ -25,6 +24,25 @@ typedef struct side {
     double structural;
     int partner; /* the side paired with this one; may be itself */
 } side;
+
+/* A part of an output: s^power (re + i im) times a force; im of power 0 alone. */
+typedef struct out_term {
+    int of; /* output */
+    int f;  /* of outs */
+    int power;
+    double re;
+    double im;
+} out_term;
+/* Forces that an output consists of, and its terms, at most: those of a joint (below). */
+enum { OUT_FORCES = 4, OUT_TERMS = 6 };
+
+/* A joint's force on a motion of what hangs on it. */
+typedef struct cut {
+    int output; /* -1: none */
+    int mass;   /* of outs: M v */
+    double kg;  /* v^T M v */
+    double *d;  /* [n_in] the force that inputs pass on: of the power of the input's own */
+} cut;
 
 typedef struct work {
     mt_lowest *l;
@@ -51,6 +69,10 @@ typedef struct work {
     double loss; /* common to all springs */
     force *in;
     force *outs;
+    int n_outs;
+    out_term *term;
+    int n_terms;
+    cut *cuts; /* [n_out] */
     side *sides;
     int n_sides;
     double *states; /* [nq] */
@@ -157,29 +179,280 @@ static void force_row(work *k, const mt_port *port, bool *one, double *loss)
     }
 }
 
+/* Adds the force of k->states to the outputs', as the term t. */
+static mt_status add_output_force(work *k, out_term t, mt_err *err)
+{
+    t.f = k->n_outs++;
+    k->term[k->n_terms++] = t;
+    MT_TRY(new_force(k, &k->outs[t.f], err));
+    return mt_lowest_force(k->l, k->states, &k->outs[t.f].push, err);
+}
+
+/* The same of the last force. */
+static void add_output_term(work *k, out_term t)
+{
+    if (t.re != 0.0) {
+        t.f = k->n_outs - 1;
+        k->term[k->n_terms++] = t;
+    }
+}
+
+/*
+ * The force of a joint. Where it is the only joint between two parts, let v be the translation
+ * of one of them, so that A v has entries in this joint's equations alone. Then, A^T lambda
+ * being the joints' forces, the force along v is
+ *     v . (M q'' + C q' + (K + i H) q - f)
+ * (mechanics/forcing.h). With the coordinates of the bodies v is made smooth, v - K^-1 K v, so
+ * that K v does no work where the joints hold; else springs between the parts have a K v. Modal
+ * damping ratios act as (M Phi) F (M Phi)^T.
+ */
+
+/* Index of a body, or behind all of them that of the ground. */
+static int index_of_body(const mt_system *sys, int body)
+{
+    return body == MT_GROUND ? sys->n_bodies : body;
+}
+
+/* Joins the parts of two bodies; the greater index names them, so that of the ground is its
+ * own. */
+static void join_parts(int *part, int a, int b)
+{
+    while (part[a] != a) {
+        a = part[a];
+    }
+    while (part[b] != b) {
+        part[b] = part[part[b]];
+        b = part[b];
+    }
+    part[a < b ? a : b] = a < b ? b : a;
+}
+
+/* part[n_bodies + 1]: that of each body, and of the ground, where all joints hold but one. */
+static void find_parts(const mt_system *sys, int joint, int *part)
+{
+    for (int b = 0; b <= sys->n_bodies; b++) {
+        part[b] = b;
+    }
+    for (int i = 0; i < sys->n_constraints; i++) {
+        const mt_constraint_def *const c = &sys->constraints[i];
+        const int first = index_of_body(sys, sys->measures[c->measure[0]].body[0]);
+        for (int e = 1; e < 2 * c->terms && c->joint != joint; e++) {
+            const int body = sys->measures[c->measure[e / 2]].body[e % 2];
+            join_parts(part, first, index_of_body(sys, body));
+        }
+    }
+    for (int b = sys->n_bodies; b >= 0; b--) {
+        part[b] = part[part[b]];
+    }
+}
+
+/* v[nq] := the motion of that part which the force of a joint's first body on its second works
+ * on; moved[n_bodies + 1]. False: the joint is not the only one between two parts. */
+static bool cut_at_joint(work *k, const mt_port *port, int *moved, double *v)
+{
+    const mt_system *const sys = k->l->sys;
+    const mt_system_joint *const j = &sys->joints[port->index];
+    const int ground = sys->n_bodies;
+    find_parts(sys, port->index, moved);
+    const int one = moved[index_of_body(sys, j->body[0])];
+    const int two = moved[index_of_body(sys, j->body[1])];
+    const bool second = two != moved[ground];
+    const int part = second ? two : one;
+    if (one == two || part == moved[ground]) {
+        return false;
+    }
+    memset(v, 0, (size_t)sys->nq * sizeof *v);
+    for (int b = 0; b <= ground; b++) {
+        moved[b] = moved[b] == part ? 1 : 0;
+        if (moved[b] == 1 && sys->bodies[b].dof[port->axis] >= 0) {
+            v[sys->bodies[b].dof[port->axis]] = second ? 1.0 : -1.0;
+        }
+    }
+    return true;
+}
+
+/* What of the terms' coefficients is meant: times their loss factor less a common one, or all
+ * of it. */
+typedef struct coefficient {
+    bool lossy;
+    double less;
+} coefficient;
+
+/* k->states += c times a term's rows' products with v. */
+static void add_term_product(work *k, mt_term_kind kind, const mt_term *t, double c,
+                             const double *v)
+{
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    double dot[MOST_ROWS] = {0.0};
+    mt_term_rows(&k->d, kind, t, k->at.pose, rows);
+    for (int r = 0; r < t->count; r++) {
+        for (int q = 0; q < MT_LOCAL; q++) {
+            const int dof = mt_local_dof(k->l->sys, t->body, q);
+            dot[r] += dof < 0 ? 0.0 : creal(rows[(r * MT_LOCAL) + q]) * v[dof];
+        }
+    }
+    for (int r = 0; r < t->count; r++) {
+        add_term_row(k, t, rows + ((ptrdiff_t)r * MT_LOCAL), c * dot[t->pair ? 1 - r : r]);
+    }
+}
+
+/* k->states := the matrix of the terms of a kind times v; moved (NULL: all terms): only those
+ * between bodies that are moved and others. *is false: a term of too many rows. */
+static void multiply_terms(work *k, mt_term_kind kind, const int *moved, coefficient of,
+                           const double *v, bool *is)
+{
+    const mt_system *const sys = k->l->sys;
+    clear(k);
+    for (int i = 0; i < k->list[kind].n_terms; i++) {
+        const mt_term *const t = &k->list[kind].terms[i];
+        const bool counts = moved == NULL || moved[index_of_body(sys, t->body[0])] !=
+                                                 moved[index_of_body(sys, t->body[1])];
+        const double by = of.lossy ? large_value(k, t->loss) - of.less : 1.0;
+        const double c = by * large_value(k, t->coefficient) * (t->pair ? 0.5 : 1.0);
+        *is = *is && (!counts || t->count <= MOST_ROWS);
+        if (*is && counts && c != 0.0) {
+            add_term_product(k, kind, t, c, v);
+        }
+    }
+}
+
+/* What inputs pass on, -v . f; k->states is M v and is overwritten. */
+static void pass_inputs(work *k, const double *v, double *d)
+{
+    const mt_system *const sys = k->l->sys;
+    for (int i = 0; i < k->ports->n_in; i++) { /* f = -M times a translation of all bodies */
+        for (int b = 0; b < sys->n_bodies && k->ports->in[i].kind == MT_PORT_BASE; b++) {
+            const int q = sys->bodies[b].dof[k->ports->in[i].index];
+            d[i] += q >= 0 ? k->states[q] : 0.0;
+        }
+    }
+    for (int i = 0; i < k->ports->n_in; i++) {
+        if (k->ports->in[i].kind != MT_PORT_BASE) {
+            large_sensor_row(k, k->ports->in[i].index);
+            d[i] = -mt_dot(sys->nq, v, k->states);
+        }
+    }
+}
+
+/* The loss factor that most springs have. */
+static double common_loss(const work *k)
+{
+    const mt_term_list *const list = &k->list[MT_TERM_STIFFNESS];
+    double most = 0.0;
+    int votes = 0;
+    for (int i = 0; i < list->n_terms; i++) { /* Boyer and Moore's vote */
+        const double own = large_value(k, list->terms[i].loss);
+        most = votes == 0 ? own : most;
+        votes += own == most ? 1 : -1;
+    }
+    return most;
+}
+
+/* v -= K^-1 K v, K v being k->states. */
+static mt_status smooth_cut(work *k, double *v, mt_err *err)
+{
+    const size_t nq = (size_t)k->l->sys->nq;
+    const mt_arena_mark mark = mt_arena_get_mark(k->scratch);
+    double *const phi = mt_arena_f64(k->scratch, nq, 1);
+    mt_lowest_push push;
+    mt_lowest_push_init(k->l, k->scratch, &push);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    MT_TRY(mt_lowest_force(k->l, k->states, &push, err));
+    mt_absolute_shape(&k->l->bodies, push.x, phi);
+    mt_axpy((int)nq, -1.0, phi, v);
+    mt_arena_rewind(k->scratch, mark);
+    return MT_OK;
+}
+
+/* K v + i H v of springs, C v and M v as forces of output o. */
+static mt_status open_joint_forces(work *k, int o, const int *moved, double *v, bool *is,
+                                   mt_err *err)
+{
+    const mt_system *const sys = k->l->sys;
+    const bool smooth = k->l->way == MT_LOWEST_SPARSE && k->shift == 0.0;
+    const coefficient whole = {.lossy = false};
+    const coefficient lossy = {.lossy = true, .less = smooth ? common_loss(k) : 0.0};
+    cut *const own = &k->cuts[o];
+    multiply_terms(k, MT_TERM_STIFFNESS, moved, whole, v, is);
+    if (*is && smooth) {
+        MT_TRY(smooth_cut(k, v, err));
+        moved = NULL;
+    } else if (*is && mt_max_abs(sys->nq, k->states) > 0.0) {
+        MT_TRY(add_output_force(k, (out_term){.of = o, .re = 1.0}, err));
+        add_output_term(
+            k, (out_term){.of = o, .power = 1, .re = large_value(k, sys->damping.stiffness)});
+    }
+    multiply_terms(k, MT_TERM_STIFFNESS, moved, lossy, v, is);
+    if (*is && mt_max_abs(sys->nq, k->states) > 0.0) {
+        MT_TRY(add_output_force(k, (out_term){.of = o, .im = 1.0}, err));
+    }
+    multiply_terms(k, MT_TERM_DAMPING, moved, whole, v, is);
+    if (*is && mt_max_abs(sys->nq, k->states) > 0.0) {
+        MT_TRY(add_output_force(k, (out_term){.of = o, .power = 1, .re = 1.0}, err));
+    }
+    multiply_terms(k, MT_TERM_MASS, NULL, whole, v, is);
+    if (!*is) {
+        *is = large_refuse(k, "a spring or damper of so many rows needs all modes");
+        return MT_OK;
+    }
+    own->output = o;
+    own->mass = k->n_outs;
+    own->kg = mt_dot(sys->nq, v, k->states);
+    MT_TRY(add_output_force(k, (out_term){.of = o, .power = 2, .re = 1.0}, err));
+    add_output_term(k,
+                    (out_term){.of = o, .power = 1, .re = large_value(k, sys->damping.mass)});
+    return MT_OK;
+}
+
+static mt_status open_joint_output(work *k, int o, bool *is, mt_err *err)
+{
+    const mt_system *const sys = k->l->sys;
+    int *const moved = mt_arena_int(k->scratch, (size_t)sys->n_bodies + 1);
+    double *const v = mt_arena_f64(k->scratch, (size_t)sys->nq, 1);
+    cut *const own = &k->cuts[o];
+    own->d = mt_arena_f64(k->mem, (size_t)k->ports->n_in, 1);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    MT_TRY(mt_arena_check(k->mem, err));
+    if (sys->loaded) {
+        *is = large_refuse(k, "forces in joints under a load need all modes");
+    } else if (!cut_at_joint(k, &k->ports->out[o], moved, v)) {
+        *is = large_refuse(k, "the force of a joint in a loop of joints needs all modes");
+    } else {
+        MT_TRY(open_joint_forces(k, o, moved, v, is, err));
+    }
+    if (*is) {
+        pass_inputs(k, v, own->d);
+    }
+    return MT_OK;
+}
+
 static mt_status open_outputs(work *k, bool *is, mt_err *err)
 {
-    k->outs = mt_arena_alloc(k->scratch, (size_t)k->ports->n_out, sizeof *k->outs);
+    const size_t n = (size_t)k->ports->n_out;
+    k->outs = mt_arena_alloc(k->scratch, n * OUT_FORCES, sizeof *k->outs);
+    k->term = mt_arena_alloc(k->scratch, n * OUT_TERMS, sizeof *k->term);
+    k->cuts = mt_arena_alloc(k->scratch, n, sizeof *k->cuts);
     MT_TRY(mt_arena_check(k->scratch, err));
-    for (int o = 0; o < k->ports->n_out; o++) {
+    for (int o = 0; o < k->ports->n_out && *is; o++) {
         const mt_port *const port = &k->ports->out[o];
+        out_term t = {.of = o, .power = large_power(port), .re = 1.0};
         bool one = true;
-        MT_TRY(new_force(k, &k->outs[o], err));
+        k->cuts[o] = (cut){.output = -1};
         if (port->kind == MT_PORT_JOINT) {
-            *is = large_refuse(k, "forces in joints need all modes");
-            return MT_OK;
+            MT_TRY(open_joint_output(k, o, is, err));
+            continue;
         }
         if (port->kind == MT_PORT_SENSOR) {
             large_sensor_row(k, port->index);
         } else {
-            force_row(k, port, &one, &k->outs[o].loss);
+            force_row(k, port, &one, &t.im);
         }
         if (!one) {
             *is = large_refuse(k, "the force of a spring with several loss factors needs "
                                   "all modes");
             return MT_OK;
         }
-        MT_TRY(mt_lowest_force(k->l, k->states, &k->outs[o].push, err));
+        MT_TRY(add_output_force(k, t, err));
     }
     return MT_OK;
 }
@@ -224,20 +497,6 @@ static mt_status add_terms(work *k, mt_term_kind kind, bool *is, mt_err *err)
         }
     }
     return MT_OK;
-}
-
-/* The loss factor that most springs have. */
-static double common_loss(const work *k)
-{
-    const mt_term_list *const list = &k->list[MT_TERM_STIFFNESS];
-    double most = 0.0;
-    int votes = 0;
-    for (int i = 0; i < list->n_terms; i++) { /* Boyer and Moore's vote */
-        const double own = large_value(k, list->terms[i].loss);
-        most = votes == 0 ? own : most;
-        votes += own == most ? 1 : -1;
-    }
-    return most;
 }
 
 static mt_status open_sides(work *k, bool *is, mt_err *err)
@@ -399,13 +658,13 @@ static mt_status find_skew(work *k, double *skew, mt_err *err)
 static force *nth_force(const work *k, int i)
 {
     const int o = i - k->ports->n_in;
-    const int s = o - k->ports->n_out;
+    const int s = o - k->n_outs;
     return o < 0 ? &k->in[i] : s < 0 ? &k->outs[o] : &k->sides[s].f;
 }
 
 static mt_status make_basis(work *k, mt_err *err)
 {
-    const int forces = k->ports->n_in + k->ports->n_out + k->n_sides;
+    const int forces = k->ports->n_in + k->n_outs + k->n_sides;
     const size_t n_x = (size_t)k->n_x;
     k->most = k->kept + (forces * MOST_SHAPES);
     k->x = mt_arena_f64(k->scratch, n_x, (size_t)k->most);
@@ -485,22 +744,29 @@ static mt_status find_modes(work *k, bool *is, mt_err *err)
     return MT_OK;
 }
 
+/* What modal damping ratios make of c at coordinate i, 2 zeta omega. */
+static double rate_of_ratio(const work *k, ptrdiff_t i)
+{
+    const mt_damping_def *const d = &k->l->sys->damping;
+    const mt_modes *const m = &k->out->modes;
+    const ptrdiff_t index = i - m->n_rigid;
+    if (!d->modal || index < 0) {
+        return 0.0;
+    }
+    const double ratio = large_value(k, index < d->n_ratios ? d->ratios[index] : d->ratio);
+    return 2.0 * ratio * sqrt(m->lambda[i]);
+}
+
 /* f.c and f.h in the few coordinates. */
 static mt_status damp(work *k, mt_err *err)
 {
-    const mt_damping_def *const d = &k->l->sys->damping;
     const mt_modes *const m = &k->out->modes;
     const ptrdiff_t n = m->n;
     double *const c = mt_arena_f64(k->mem, (size_t)n, (size_t)n);
     double *const h = mt_arena_f64(k->mem, (size_t)n, (size_t)n);
     MT_TRY(mt_arena_check(k->mem, err));
     for (ptrdiff_t i = 0; i < n; i++) {
-        const ptrdiff_t index = i - m->n_rigid;
-        const bool vibrates = index >= 0;
-        const double ratio =
-            !vibrates ? 0.0 : large_value(k, index < d->n_ratios ? d->ratios[index] : d->ratio);
-        c[i * (n + 1)] = k->alpha + (k->beta * m->lambda[i]) +
-                         (d->modal ? 2.0 * ratio * sqrt(m->lambda[i]) : 0.0);
+        c[i * (n + 1)] = k->alpha + (k->beta * m->lambda[i]) + rate_of_ratio(k, i);
         h[i * (n + 1)] = k->loss * m->lambda[i];
     }
     for (int s = 0; s < k->n_sides; s++) {
@@ -559,6 +825,26 @@ static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
     return MT_OK;
 }
 
+/* What inputs pass on to a joint's force, and modal damping ratios do to it. */
+static mt_status fill_cut(work *k, const cut *own, filling *f, mt_err *err)
+{
+    const int n = k->out->modes.n;
+    const ptrdiff_t n_out = k->ports->n_out;
+    double *const s = ensure(k, &f->s[1], n, k->ports->n_out);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t j = 0; j < n; j++) {
+        s[j + ((ptrdiff_t)own->output * n)] +=
+            rate_of_ratio(k, j) * k->outs[own->mass].in_all[j];
+    }
+    for (int i = 0; i < k->ports->n_in; i++) {
+        double *const d = ensure(k, &f->d[mt_response_power(&k->ports->in[i])], k->ports->n_out,
+                                 k->ports->n_in);
+        MT_TRY(mt_arena_check(k->mem, err));
+        d[own->output + (i * n_out)] = own->d[i];
+    }
+    return MT_OK;
+}
+
 static mt_status fill_reduced_problem(work *k, mt_err *err)
 {
     const int n = k->out->modes.n;
@@ -575,17 +861,23 @@ static mt_status fill_reduced_problem(work *k, mt_err *err)
         MT_TRY(mt_arena_check(k->mem, err));
         memcpy(b + ((ptrdiff_t)i * n), k->in[i].in_all, bytes);
     }
-    for (int o = 0; o < ports->n_out; o++) {
-        double *const s = ensure(k, &f.s[large_power(&ports->out[o])], n, ports->n_out);
+    for (int t = 0; t < k->n_terms; t++) {
+        const out_term *const own = &k->term[t];
+        const double *const in_all = k->outs[own->f].in_all;
+        double *const s = ensure(k, &f.s[own->power], n, ports->n_out);
         MT_TRY(mt_arena_check(k->mem, err));
-        memcpy(s + ((ptrdiff_t)o * n), k->outs[o].in_all, bytes);
-        if (k->outs[o].loss != 0.0) {
+        mt_axpy(n, own->re, in_all, s + ((ptrdiff_t)own->of * n));
+        if (own->im != 0.0) {
             double *const im = ensure(k, &f.s_im, n, ports->n_out);
             MT_TRY(mt_arena_check(k->mem, err));
-            mt_axpy(n, k->outs[o].loss, k->outs[o].in_all, im + ((ptrdiff_t)o * n));
+            mt_axpy(n, own->im, in_all, im + ((ptrdiff_t)own->of * n));
         }
+    }
+    for (int o = 0; o < ports->n_out; o++) {
         if (ports->out[o].kind == MT_PORT_SENSOR) {
             MT_TRY(add_ground(k, o, &f, err));
+        } else if (k->cuts[o].output >= 0) {
+            MT_TRY(fill_cut(k, &k->cuts[o], &f, err));
         }
     }
     mt_forced *const to = &k->out->f;
@@ -616,33 +908,53 @@ static double ratio_left(const work *k)
     return most;
 }
 
+/* 4 zeta (v^T M v of the modes left out)^(1/2), of the motion of a cut. */
+static double rate_left(const work *k, const cut *own)
+{
+    double kg = own->kg;
+    for (int j = 0; j < k->free + k->kept; j++) {
+        const double part = k->outs[own->mass].in_all[j];
+        kg -= part * part;
+    }
+    /* the shapes beside the modes diminish it, but their damping is that of no mode */
+    return 4.0 * ratio_left(k) * sqrt(fmax(kg, 0.0));
+}
+
 static mt_status note_left(work *k, double lambda, mt_err *err)
 {
     const mt_port_set *const ports = k->ports;
     const size_t n = (size_t)k->out->modes.n;
     const size_t sides = (size_t)k->n_sides;
     mt_left_out *const left = mt_arena_alloc(k->mem, 1, sizeof *left);
-    mt_left_part *const part = mt_arena_alloc(
-        k->mem, (size_t)ports->n_in + (size_t)ports->n_out + sides, sizeof *part);
-    double *const power = mt_arena_f64(k->mem, (size_t)ports->n_in + (size_t)ports->n_out, 1);
+    const size_t terms = (size_t)k->n_terms;
+    mt_left_part *const part =
+        mt_arena_alloc(k->mem, (size_t)ports->n_in + terms + sides, sizeof *part);
+    double *const power = mt_arena_f64(k->mem, (size_t)ports->n_in + terms, 1);
+    double *const rate = mt_arena_f64(k->mem, (size_t)ports->n_out, 1);
+    int *const of = mt_arena_int(k->mem, terms);
     double *const row = mt_arena_f64(k->mem, n, sides);
     double *const damping = mt_arena_f64(k->mem, sides, 2);
     double *const root = mt_arena_f64(k->mem, n, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     mt_left_part *const out = part + ports->n_in;
-    mt_left_part *const side_of = out + ports->n_out;
+    mt_left_part *const side_of = out + terms;
     for (int i = 0; i < ports->n_in; i++) {
         part[i] = k->in[i].left;
         power[i] = mt_response_power(&ports->in[i]);
     }
+    for (int t = 0; t < k->n_terms; t++) {
+        const out_term *const own = &k->term[t];
+        const double by = hypot(own->re, own->im);
+        out[t] = k->outs[own->f].left;
+        out[t].size *= by;
+        out[t].open *= by;
+        out[t].noise *= by;
+        out[t].loose *= by;
+        of[t] = own->of;
+        power[ports->n_in + t] = own->power;
+    }
     for (int o = 0; o < ports->n_out; o++) {
-        const double by = hypot(1.0, k->outs[o].loss);
-        out[o] = k->outs[o].left;
-        out[o].size *= by;
-        out[o].open *= by;
-        out[o].noise *= by;
-        out[o].loose *= by;
-        power[ports->n_in + o] = large_power(&ports->out[o]);
+        rate[o] = k->cuts[o].output < 0 ? 0.0 : rate_left(k, &k->cuts[o]);
     }
     for (size_t s = 0; s < sides; s++) {
         const side *const own = &k->sides[s];
@@ -662,7 +974,10 @@ static mt_status note_left(work *k, double lambda, mt_err *err)
                           .loss = fabs(k->loss),
                           .ratio = ratio_left(k),
                           .in = part,
+                          .n_out = k->n_terms,
                           .out = out,
+                          .out_of = of,
+                          .out_rate = rate,
                           .n_side = k->n_sides,
                           .side = side_of,
                           .row = row,
@@ -680,7 +995,7 @@ static mt_status reduce_all(const work *k, mt_err *err)
     for (int i = 0; i < k->ports->n_in; i++) {
         MT_TRY(reduce_force(k, &k->in[i], err));
     }
-    for (int o = 0; o < k->ports->n_out; o++) {
+    for (int o = 0; o < k->n_outs; o++) {
         MT_TRY(reduce_force(k, &k->outs[o], err));
     }
     for (int s = 0; s < k->n_sides; s++) {

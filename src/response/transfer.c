@@ -315,13 +315,19 @@ static double error_of(const work *k, ptrdiff_t o, ptrdiff_t i)
     return (ROUNDINGS * DBL_EPSILON * sum) + (left * right);
 }
 
-/* |A^p g| m^p (|g| where whole) of a force and of the local damping along its motion x. */
-static double left_of(const work *k, const mt_left_part *own, double power,
-                      const double complex *x, double m, bool whole)
+/* |A^p g| m^p (|g| where whole) of a force. */
+static double left_of_part(const work *k, const mt_left_part *own, double power, double m,
+                           bool whole)
+{
+    return pow(k->w, power) * (whole ? own->size : own->open * pow(m, own->order));
+}
+
+/* The same of local damping along the motion x. */
+static double left_of_sides(const work *k, const double complex *x, double m, bool whole)
 {
     const mt_left_out *const l = k->t->left;
     const ptrdiff_t n = k->t->n;
-    double sum = pow(k->w, power) * (whole ? own->size : own->open * pow(m, own->order));
+    double sum = 0.0;
     for (ptrdiff_t d = 0; d < l->n_side; d++) {
         double complex motion = 0.0;
         for (ptrdiff_t j = 0; j < n; j++) {
@@ -329,7 +335,7 @@ static double left_of(const work *k, const mt_left_part *own, double power,
         }
         const double force = hypot(l->structural[d], k->w * l->damping[d]) * cabs(motion);
         const mt_left_part *const s = &l->side[d];
-        sum += force * (whole ? s->size : s->open * pow(m, s->order));
+        sum += force * left_of_part(k, s, 0.0, m, whole);
     }
     return sum;
 }
@@ -364,13 +370,23 @@ static double left_error(const work *k, ptrdiff_t o, ptrdiff_t i)
     }
     const double turn =
         1.0 + (((lossy * (1.0 + (l->shift / lambda))) + (k->w * l->alpha / lambda)) / q);
-    double sum =
-        noise_of(k, &l->in[i], l->in_power[i], a) + noise_of(k, &l->out[o], l->out_power[o], x);
+    double sum = noise_of(k, &l->in[i], l->in_power[i], a);
+    for (int p = 0; p < l->n_out; p++) {
+        sum += l->out_of[p] == o ? noise_of(k, &l->out[p], l->out_power[p], x) : 0.0;
+    }
     for (int whole = 0; whole < (l->ratio > 0.0 ? 2 : 1); whole++) {
         const double factor =
             whole == 0 ? turn * turn / q : 4.0 * l->ratio * k->w / sqrt(l->lambda) / (q * q);
-        sum += factor * left_of(k, &l->in[i], l->in_power[i], x, m, whole == 1) *
-               left_of(k, &l->out[o], l->out_power[o], a, m, whole == 1);
+        const double in = left_of_part(k, &l->in[i], l->in_power[i], m, whole == 1) +
+                          left_of_sides(k, x, m, whole == 1);
+        double out = left_of_sides(k, a, m, whole == 1);
+        for (int p = 0; p < l->n_out; p++) {
+            out += l->out_of[p] == o
+                       ? left_of_part(k, &l->out[p], l->out_power[p], m, whole == 1)
+                       : 0.0;
+        }
+        sum += factor * in * out;
+        sum += whole == 1 ? k->w * l->out_rate[o] * in / q : 0.0;
     }
     return sum;
 }

@@ -41,8 +41,13 @@ typedef struct mt_left_out {
     double beta;   /* by stiffness [s] */
     double loss;   /* of all springs */
     double ratio;
-    const mt_left_part *in;  /* [n_in] */
-    const mt_left_part *out; /* [n_out] */
+    const mt_left_part *in; /* [n_in] */
+    int n_out;
+    const mt_left_part *out; /* [n_out] parts of outputs */
+    const int *out_of;       /* [n_out] output of each */
+    /* by output: joints' forces under damping ratios, 4 zeta times the root of the mass left
+     * out: w times that times |f| / q is added to the error */
+    const double *out_rate;
     int n_side;
     const mt_left_part *side; /* [n_side] */
     const double *row;        /* n x n_side: motion along each side, by coordinate */

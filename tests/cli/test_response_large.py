@@ -100,11 +100,25 @@ class ResponseLarge(CliTest):
         link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
         model = self.write("link.json", json.dumps(link))
         for options, why in ((("--poles",), "--poles needs all modes"), (("--direct",), "--direct needs all modes"), (("--modes", "5"), "--modes needs all modes"),
-                             (("--output", "joint.root.y"), "forces in joints need all modes"),
                              (("--to", "1e6"), "a response so far up needs more than its 384 lowest modes")):
             done = self.expect(2, "response", model, "--input", "tip.y", *options)
             self.assertIn("5001 bodies are too many for dense matrices", done.stderr)
             self.assertIn(why, done.stderr)
+        for more, why in (({"gravity_m_per_s2": [9.81, 0]}, "forces in joints under a load need all modes"),
+                          ({"joints": link["joints"] + [{"name": "slot", "type": "pin-in-slot", "bodies": ["ground", "beam.end"], "at": "tip", "axis": [0, 1]}]},
+                           "the force of a joint in a loop of joints needs all modes")):
+            done = self.expect(2, "response", self.write("more.json", json.dumps({**link, **more})), "--input", "tip.y", "--output", "joint.root.y")
+            self.assertIn(why, done.stderr)
+
+    def test_joints_carry_what_hangs_on_them(self):
+        """The root of a cantilever of 1 kg: slowly it carries the force at the tip, or the mass that the ground accelerates."""
+        link = large.link(5000)
+        link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
+        done = self.expect(0, "response", self.write("link.json", json.dumps(link)), "--input", "tip.y", "--input", "base.y", "--output", "joint.root.y",
+                           "--from", "0.0005", "--to", "0.001", "--points", "2", "--format", "json")
+        for got, want in zip(json.loads(done.stdout)[0]["responses"], (-1.0, 1.0)):
+            self.assertAlmostEqual(got["re"][0], want, delta=1e-5)
+            self.assertLess(got["error"][0], 1e-6)
 
 
 if __name__ == "__main__":
