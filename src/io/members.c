@@ -9,6 +9,8 @@ bool mt_object_match(mt_reader *r, mt_addr value, const mt_key_table *table, mt_
 {
     out->addr = value;
     out->table = table;
+    out->errors = r->diags->errors;
+    memset(out->read, 0, sizeof out->read);
     return mt_reader_object(r, value, table, out->found);
 }
 
@@ -30,6 +32,11 @@ mt_addr mt_object_value(const mt_object *o, const char *member)
 bool mt_object_has(const mt_reader *r, const mt_object *o, const char *member)
 {
     return mt_json_member(r->doc, o->addr, member) != MT_NO_ADDR;
+}
+
+bool mt_object_wrong(const mt_reader *r, const mt_object *o)
+{
+    return r->diags->errors > o->errors;
 }
 
 mt_addr mt_object_place(const mt_reader *r, const mt_object *o, const char *member)
@@ -80,12 +87,26 @@ void mt_object_leave_out(mt_object *o, const char *first, int n)
     }
 }
 
+static void read_row(mt_reader *r, const mt_object *o, int k, void *item)
+{
+    const mt_key *const key = &o->table->keys[k];
+    if (key->read != NULL && (o->found[k] != MT_NO_ADDR || o->table->absent)) {
+        key->read(r, key, o->found[k], item);
+    }
+}
+
+void mt_object_read_first(mt_reader *r, mt_object *o, const char *member, void *item)
+{
+    const int k = key_index(o, member);
+    read_row(r, o, k, item);
+    o->read[k] = true;
+}
+
 void mt_object_read(mt_reader *r, const mt_object *o, void *item)
 {
     for (int k = 0; k < o->table->n; k++) {
-        const mt_key *const key = &o->table->keys[k];
-        if (key->read != NULL && o->found[k] != MT_NO_ADDR) {
-            key->read(r, key, o->found[k], item);
+        if (!o->read[k]) {
+            read_row(r, o, k, item);
         }
     }
 }
@@ -94,8 +115,11 @@ bool mt_members_read(mt_reader *r, mt_addr value, const mt_key_table *table, voi
 {
     mt_object o;
     int which = 0;
-    if (!mt_object_match(r, value, table, &o)) {
+    if (!mt_object_match(r, value, table, &o) && !table->absent) {
         return false;
+    }
+    if (table->absent && table->size > 0) {
+        memset(item, 0, table->size);
     }
     if (table->one_of > 0) {
         which = mt_object_one_of(r, &o, table->keys[0].name, table->one_of);
@@ -175,8 +199,9 @@ void mt_read_ulong(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 void mt_read_choice(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     const int which = mt_reader_choice(r, value, key->what, key->choices, key->n_choices);
+    const int is = key->least + which;
     if (which != MT_ABSENT) { /* the enums of C11 here are int or unsigned, of one size */
-        memcpy(place(key, item), &which, sizeof which);
+        memcpy(place(key, item), &is, sizeof is);
     }
 }
 

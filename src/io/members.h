@@ -11,7 +11,8 @@
  * hold, where its value goes, and the sentence of the JSON Schema. mt_members_read reads all
  * rows that have a function to read with, in the order of the table; the others are read by the
  * object's own reader (mt_object_value). A document adds types of its own as functions
- * (mt_key_read). Absent members leave the struct as it is: it holds the defaults.
+ * (mt_key_read). Absent members leave the struct as it is: it holds the defaults; or, where the
+ * table says so, they are read as well, and each row knows what its absence means.
  *
  * The macros write rows, with THIS for the struct; the compiler checks the type of its member.
  * Behind the sentence more may be said: `.otherwise` (the default, as JSON), `.examples`,
@@ -105,7 +106,8 @@
         MT_M_TO(mt_read_ulong, unsigned long, m), .least = (from), .most = (to), \
         .says = __VA_ARGS__                                                      \
     }
-/* An enum, the index of one of a list of names; `kind` in messages: "role" */
+/* An enum, the index of one of a list of names (`.least`: what the first one is, where that is
+ * not 0); `kind` in messages: "role" */
 #define MT_M_CHOICE(label, must, m, of, kind, list, ...)                   \
     {                                                                      \
         .name = (label), .type = MT_KEY_TEXT, .required = (must),          \
@@ -123,6 +125,7 @@
         .name = (label), .type = MT_KEY_OBJECT, .required = (must),          \
         MT_M_TO(mt_read_inner, part, m), .of = &(table), .says = __VA_ARGS__ \
     }
+#define MT_M_STRUCT(label, of_type, m, table) MT_M_PART(label, false, m, of_type, table, NULL)
 /* Structs and their number (int); a list that must not be empty is called `kind` in messages,
  * else NULL. An item that is no such object is left out. */
 #define MT_M_ITEMS(label, must, m, n, item, kind, table, ...)                           \
@@ -136,7 +139,9 @@
 struct mt_object {
     mt_addr addr;
     const mt_key_table *table;
+    int errors; /* noted before it was matched */
     mt_addr found[MT_MAX_KEYS];
+    bool read[MT_MAX_KEYS]; /* already */
 };
 
 /* As mt_reader_object. */
@@ -145,19 +150,24 @@ bool mt_object_match(mt_reader *r, mt_addr value, const mt_key_table *table, mt_
 mt_addr mt_object_value(const mt_object *o, const char *member);
 /* True where the member is present, also of a wrong type. */
 bool mt_object_has(const mt_reader *r, const mt_object *o, const char *member);
+/* True where anything of the object has been noted as wrong since it was matched. */
+bool mt_object_wrong(const mt_reader *r, const mt_object *o);
 /* The address of a member, also of a wrong type; the object's own where it is absent. */
 mt_addr mt_object_place(const mt_reader *r, const mt_object *o, const char *member);
 /* The one of n members (neighbours in the table, from `first` on) that is there, as an index
  * from 0; MT_ABSENT where none or several are (noted). */
 int mt_object_one_of(mt_reader *r, const mt_object *o, const char *first, int n);
 
+/* Read the row of a member before the others, which mt_object_read then leaves out. */
+void mt_object_read_first(mt_reader *r, mt_object *o, const char *member, void *item);
 /* Read the rows of a matched object into the struct, in the table's order. */
 void mt_object_read(mt_reader *r, const mt_object *o, void *item);
 /* Leave out n members (neighbours in the table, from `first` on), as if of a wrong type. */
 void mt_object_leave_out(mt_object *o, const char *first, int n);
 /* Match an object with its table and read it: the table's defaults, `check`, rows, `finish`.
- * Returns false (noted) where the value is no such object, or where it is not known which of
- * the members that exclude each other is meant. */
+ * Returns false (noted) where the value is no such object (of a table that reads absent members
+ * true: all of them are absent), or where it is not known which of the members that exclude
+ * each other is meant. */
 bool mt_members_read(mt_reader *r, mt_addr value, const mt_key_table *table, void *item);
 
 /* The items of a list, or the single one that is written without it, read by their table; *n:

@@ -215,12 +215,6 @@ static const mt_key *key_of(const mt_reader *r, mt_addr value)
     return NULL;
 }
 
-mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value)
-{
-    const mt_key *const key = key_of(r, value);
-    return key == NULL ? MT_POSSIBLE_NONE : key->possible;
-}
-
 static bool is_accepted(const mt_reader *r, const char *name)
 {
     bool accepted = false;

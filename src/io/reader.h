@@ -91,7 +91,7 @@ struct mt_key {
     const char *pattern;
     mt_key_type type;
     mt_possible_id possible; /* row of its numbers; MT_POSSIBLE_NONE: no numbers */
-    int least;               /* of a whole number; of the items of a list */
+    int least;               /* of a whole number; of the items of a list; of an enum */
     int most;
     int n_choices;
     bool required;
@@ -109,6 +109,8 @@ struct mt_key_table {
     int n;
     int one_of;  /* the first so many members exclude each other, and one is there; 0: none */
     size_t size; /* of the struct */
+    /* Rows are read where their members are absent, too (MT_NO_ADDR); a struct begins as 0 */
+    bool absent;
     /* Fill a new struct; which: of the members that exclude each other, MT_ABSENT: none */
     void (*defaults)(void *item, mt_addr addr, int which);
     /* Note what is wrong with members together, before rows are read; what cannot be read
@@ -142,8 +144,6 @@ enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
  * latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
-/* The row of base/possible.h of a recently matched member. */
-mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
 /* Check a number (NaN: not known), the value of a recently matched member or an item of it,
  * against the member's row: an impossible value is noted ("weight (0) must be above 0"), an
  * implausible one becomes a warning. */

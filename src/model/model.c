@@ -25,7 +25,6 @@ mt_status mt_model_new(mt_model **out, mt_err *err)
     for (int k = 0; k < 3; k++) {
         model->gravity[k] = MT_ABSENT;
     }
-    model->dimension_addr = MT_NO_ADDR;
     *out = model;
     return MT_OK;
 }
@@ -162,33 +161,6 @@ const char *mt_spring_type_name(mt_spring_type type)
         break;
     }
     return "unknown";
-}
-
-#define UNIT_NAME(name, si, dimension, up, down) name,
-
-const char *const *mt_model_units(int *n)
-{
-    static const char *const units[] = {"1",         "m",
-                                        "m^2",       "m^3",
-                                        "m^4",       "kg",
-                                        "kg/m",      "kg/m^2",
-                                        "kg/m^3",    "kg m",
-                                        "kg m^2",    "s",
-                                        "1/s",       "Hz",
-                                        "rad",       "rad/s",
-                                        "m/s",       "m/s^2",
-                                        "N",         "N/m",
-                                        "N/m^2",     "Pa",
-                                        "N m",       "N m^2",
-                                        "N m/rad",   "N s/m",
-                                        "N m s/rad", "m/rad",
-                                        "rad/m",     "J",
-                                        "W",         "mm",
-                                        "cm",        "in",
-                                        "ft",        "deg",
-                                        "rpm",       MT_UNIT_LIST(UNIT_NAME)};
-    *n = MT_COUNT(units);
-    return units;
 }
 
 const mt_unit *mt_parameter_si(const mt_parameter *parameter)

@@ -28,6 +28,7 @@ enum { MT_MAX_CONFIGURED = 10000000 };
 
 /* Index into mt_model.nums; MT_ABSENT where the member was not given. */
 typedef int mt_num;
+typedef mt_num mt_vector[3];
 
 typedef struct mt_number {
     mt_expr expr;
@@ -60,14 +61,14 @@ typedef struct mt_parameter {
 typedef struct mt_position {
     mt_name point_name; /* set where a string was given */
     int point;          /* resolved: index of the point, MT_ABSENT: own coordinates */
-    mt_num x[3];        /* own coordinates; in two dimensions x[2] is MT_ABSENT */
+    mt_vector x;        /* own coordinates; in two dimensions x[2] is MT_ABSENT */
     bool given;
     mt_addr addr;
 } mt_position;
 
 typedef struct mt_point {
     mt_name name;
-    mt_num x[3];
+    mt_vector x;
 } mt_point;
 
 /* Attachment of a joint, spring or sensor. Written "ground", "crank", "beam.start", "beam.end",
@@ -100,6 +101,7 @@ typedef struct mt_body {
     mt_num inertia[6];
     mt_position centre;
     mt_presence in;
+    mt_origin origin; /* of its numbers: for people */
 } mt_body;
 
 typedef enum mt_section_shape {
@@ -154,7 +156,6 @@ typedef struct mt_link {
     mt_num shear_modulus;  /* Pa, beams: torsion in 3-D, shear */
     mt_shear shear;        /* beams */
     bool rotary_inertia;   /* beams: of the section's rotation in bending */
-    mt_addr rotary_addr;
     mt_section section;
     int n_stiffness;        /* 0, 1 or elements - 1 */
     mt_num *stiffness;      /* N m/rad */
@@ -165,12 +166,11 @@ typedef struct mt_link {
     int n_element_inertia;
     mt_num *element_inertia; /* kg m^2 about the element's centre, hinge axis */
     bool has_hinge_axis;
-    mt_num hinge_axis[3];      /* 3-D */
+    mt_vector hinge_axis;      /* 3-D */
     mt_num radius_of_gyration; /* m, 3-D lumped: about the element's own long axis; absent: 0 */
     mt_num loss_factor;        /* of its hinges or beam elements; absent: 0 */
     mt_presence in;
-    mt_addr elements_addr;
-    mt_addr stiffness_addr;
+    mt_addr addr;
 } mt_link;
 
 /* type, JSON name; what they are stands in joint.c */
@@ -202,9 +202,9 @@ typedef struct mt_joint {
     bool has_axis;
     /* revolute, cylindrical, planar, plane: axis / normal; prismatic, slot, line: direction.
      * Fixed to bodies[0] (drawn on both). Not normalised */
-    mt_num axis[3];
+    mt_vector axis;
     bool has_axis_b;
-    mt_num axis_b[3]; /* universal: second axis, on bodies[1] */
+    mt_vector axis_b; /* universal: second axis, on bodies[1] */
     mt_num length;    /* distance: m; absent: as drawn */
     mt_num mass;      /* distance: kg of a uniform thin rod between the points; absent: none */
     mt_name gear_joints[2]; /* gear, rack: coordinate of [1] = ratio * angle of [0] */
@@ -247,8 +247,8 @@ typedef struct mt_spring {
     mt_num density;
     mt_num loss_factor; /* not for dampers; absent: 0 */
     /* bushing N/m in global axes of the reference position, attached to bodies[0] */
-    mt_num translation[3];
-    mt_num rotation[3]; /* bushing N m/rad */
+    mt_vector translation;
+    mt_vector rotation; /* bushing N m/rad */
     mt_num *matrix;     /* bushing 6 x 6, row-major, lower triangle used, symmetric; NULL */
     mt_presence in;
 } mt_spring;
@@ -273,12 +273,11 @@ typedef struct mt_load {
     mt_position at;
     bool has_force;  /* a vector, or */
     bool one_number; /* a number */
-    mt_num force[3]; /* N */
+    mt_vector force; /* N */
     bool has_moment;
     bool moment_vector;
     mt_num moment; /* N m */
-    mt_addr force_addr;
-    mt_addr moment_addr;
+    mt_addr addr;
     bool unread; /* its errors are in diags already */
     mt_presence in;
 } mt_load;
@@ -295,7 +294,7 @@ typedef struct mt_sensor {
     mt_num fraction; /* on a link: 0 at from, 1 at to */
     mt_position at;  /* on a body: default its centre */
     unsigned directions;
-    mt_addr directions_addr;
+    mt_addr addr;
 } mt_sensor;
 
 typedef struct mt_named_mode {
@@ -303,7 +302,6 @@ typedef struct mt_named_mode {
     mt_name configuration_name;
     int configuration;
     int index; /* 1-based vibration mode at the original design */
-    mt_addr index_addr;
 } mt_named_mode;
 
 typedef struct mt_override {
@@ -351,7 +349,6 @@ typedef struct mt_damping {
     mt_num stiffness;     /* s */
     bool inherited;       /* set by mt_model_resolve: from `like`, or from the model */
     mt_addr addr;
-    mt_addr ratios_addr;
 } mt_damping;
 
 typedef struct mt_configuration {
@@ -361,7 +358,7 @@ typedef struct mt_configuration {
     int n_overrides; /* own ones as read; after mt_model_resolve with inherited ones */
     mt_override *overrides;
     bool has_gravity;
-    mt_num gravity[3]; /* after mt_model_resolve: the one in force (inherited or the model's) */
+    mt_vector gravity; /* after mt_model_resolve: the one in force (inherited or the model's) */
     mt_drive drive;    /* after mt_model_resolve: the one in force */
     mt_damping damping; /* after mt_model_resolve: the one in force */
 } mt_configuration;
@@ -389,9 +386,8 @@ typedef struct mt_model {
     /* units of coordinates, angles and speeds declared in its file; NULL: SI */
     const mt_unit *units[MT_DIMENSION_COUNT];
     int dimension; /* 2 or 3 */
-    mt_addr dimension_addr;
     bool has_gravity;
-    mt_num gravity[3];
+    mt_vector gravity;
     mt_damping damping;   /* of configurations that have none of their own */
     mt_accepted accepted; /* warnings that the author of the model accepts */
     MT_LIST_OF(mt_number, nums);
@@ -441,8 +437,6 @@ bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);
 const char *mt_spring_type_name(mt_spring_type type);
 
-/* The list of unit strings that a parameter's `unit` may have; *n their number. */
-const char *const *mt_model_units(int *n);
 /* Set the kinds of all parameters: from the unit, or from the expression where none is
  * given. */
 void mt_model_find_kinds(mt_model *model);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Units of parameters: what their names say, and what their uses do. */
+/* Parameters and their units: what the names of units say, and what their uses do. */
+#include "io/read_units.h"
+
 #include "model/read_priv.h"
 
 #include <string.h>
@@ -8,6 +10,30 @@
 #include "expr/kind.h"
 #include "expr/units.h"
 #include "io/synonyms.h"
+#include "model/names.h"
+
+#define UNIT_NAME(name, si, dimension, up, down) name,
+
+/* What the `unit` of a parameter may be. */
+static const char *const UNITS[] = {"1",         "m",
+                                    "m^2",       "m^3",
+                                    "m^4",       "kg",
+                                    "kg/m",      "kg/m^2",
+                                    "kg/m^3",    "kg m",
+                                    "kg m^2",    "s",
+                                    "1/s",       "Hz",
+                                    "rad",       "rad/s",
+                                    "m/s",       "m/s^2",
+                                    "N",         "N/m",
+                                    "N/m^2",     "Pa",
+                                    "N m",       "N m^2",
+                                    "N m/rad",   "N s/m",
+                                    "N m s/rad", "m/rad",
+                                    "rad/m",     "J",
+                                    "W",         "mm",
+                                    "cm",        "in",
+                                    "ft",        "deg",
+                                    "rpm",       MT_UNIT_LIST(UNIT_NAME)};
 
 enum { HINT_TEXT = 256, KIN_TEXT = 160, MEMBER_UNIT = 48 };
 
@@ -15,23 +41,21 @@ enum { HINT_TEXT = 256, KIN_TEXT = 160, MEMBER_UNIT = 48 };
  * NULL: none is. */
 static const char *find_kin(const mt_unit_worth *said, char kin[KIN_TEXT])
 {
-    int n = 0;
     size_t used = 0;
     mt_unit_worth has;
-    const char *const *const names = mt_model_units(&n);
     kin[0] = '\0';
-    for (int i = 0; i < n; i++) {
-        const size_t length = strlen(names[i]) + strlen(", \"\"");
-        if (!mt_unit_read(names[i], MT_READ_MASSES, &has) ||
+    for (int i = 0; i < MT_COUNT(UNITS); i++) {
+        const size_t length = strlen(UNITS[i]) + strlen(", \"\"");
+        if (!mt_unit_read(UNITS[i], MT_READ_MASSES, &has) ||
             !mt_unit_same_powers(said, &has, true)) {
             continue;
         }
         if (mt_unit_same_factor(said->factor, has.factor)) {
-            return names[i];
+            return UNITS[i];
         }
         if (used + length < KIN_TEXT) {
             (void)mt_snprintf(kin + used, KIN_TEXT - used, "%s\"%s\"", used == 0 ? "" : ", ",
-                              names[i]);
+                              UNITS[i]);
             used += strlen(kin + used);
         }
     }
@@ -69,32 +93,128 @@ static void set_unit(mt_parameter *p, const mt_unit *unit, const char *name)
     p->unit = other ? unit->si : name;
 }
 
-void mt_read_parameter_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p)
+static void read_unit(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    int n = 0;
+    mt_parameter *const p = item;
+    (void)key;
     char hint[HINT_TEXT];
-    const char *const *const names = mt_model_units(&n);
-    if (!mt_reader_type(&mr->r, value, MT_KEY_TEXT)) {
-        return;
-    }
-    const char *const text = mt_json_string(mr->r.doc, value);
-    for (int i = 0; i < n; i++) {
-        if (strcmp(names[i], text) == 0) {
-            set_unit(p, mt_unit_find(text), names[i]);
+    const char *const text = mt_json_string(r->doc, value);
+    for (int i = 0; i < MT_COUNT(UNITS); i++) {
+        if (strcmp(UNITS[i], text) == 0) {
+            set_unit(p, mt_unit_find(text), UNITS[i]);
             return;
         }
     }
     if (name_of_unit(text, hint)) {
-        mt_diag_structure(mr->r.diags, value, "unknown unit \"%s\"%s", text, hint);
+        mt_diag_structure(r->diags, value, "unknown unit \"%s\"%s", text, hint);
     } else {
-        const bool may = mt_diag_may_suggest(mr->r.diags);
-        const char *const other = may ? mt_synonym(text, names, n) : NULL;
-        const char *const near = may && other == NULL ? mt_text_nearest(text, names, n) : other;
-        mt_diag_structure(mr->r.diags, value, "unknown unit \"%s\"%s%s%s", text,
+        const bool may = mt_diag_may_suggest(r->diags);
+        const char *const other = may ? mt_synonym(text, UNITS, MT_COUNT(UNITS)) : NULL;
+        const char *const near =
+            may && other == NULL ? mt_text_nearest(text, UNITS, MT_COUNT(UNITS)) : other;
+        mt_diag_structure(r->diags, value, "unknown unit \"%s\"%s%s%s", text,
                           near == NULL ? " (\"modetune schema model\" has all)"
                                        : "; did you mean \"",
                           near == NULL ? "" : near, near == NULL ? "" : "\"?");
     }
+}
+
+#define THIS mt_parameter
+static const mt_key PARAMETER[] = {
+    MT_M_JUST("value", NUMBER, true, ANY,
+              "Its value: a number in its unit, or an expression, which is in SI units and may "
+              "depend on other parameters."),
+    MT_M_JUST("unit", TEXT, false, NONE,
+              "Unit of the number, which wins over the file's; of SI, for people and tables, "
+              "or one that is converted: mm, N/mm, GPa, g, lb, ... Numbers that override it "
+              "(in configurations, --set) are in it, too. \"g\" is a gram, or 9.80665 m/s^2 of "
+              "a parameter that gravity is made of.",
+              .read = read_unit, .choices = UNITS, .n_choices = MT_COUNT(UNITS)),
+    MT_M_TEXT("description", description, "Free text for people."),
+    MT_M_TEXT("source", source, MT_M_ORIGIN),
+    MT_I_ORIGIN,
+};
+#undef THIS
+
+/* The number is in the unit, which stands behind it. */
+static void parameter_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_parameter *const p = item;
+    (void)which;
+    p->value = mt_read_num(mt_model_reader_of(r), mt_object_value(o, "value"), MT_POSSIBLE_ANY,
+                           p->written);
+}
+
+const mt_key_table mt_parameter_keys = {.what = "parameter",
+                                        .keys = PARAMETER,
+                                        .n = MT_COUNT(PARAMETER),
+                                        .finish = parameter_finish,
+                                        .says = "A parameter with its documentation."};
+
+static void read_parameter(mt_reader *r, mt_addr value, mt_parameter *p)
+{
+    if (!mt_reader_type(r, value, MT_KEY_NUMBER_OR_OBJECT)) {
+        return;
+    }
+    if (mt_json_type_of(r->doc, value) == MT_JSON_OBJECT) {
+        (void)mt_members_read(r, value, &mt_parameter_keys, p);
+    } else {
+        p->value = mt_read_num(mt_model_reader_of(r), value, MT_POSSIBLE_NONE, NULL);
+    }
+}
+
+/* Expressions of lengths, angles and speeds, when all parameters are known: a parameter without
+ * a unit is what its expression makes it. */
+static void check_kinds(mt_model_reader *mr)
+{
+    const mt_model *const m = mr->m;
+    for (int i = 0; i < m->n_parameters; i++) {
+        if (m->parameters[i].value != MT_ABSENT) {
+            const mt_number *const number = &m->nums[m->parameters[i].value];
+            mt_reader_check_kind(&mr->r, number->addr, &number->expr,
+                                 mt_model_number_unit(m, i));
+        }
+    }
+}
+
+/* Parameters are entered by name first: expressions may look ahead. */
+void mt_read_parameters(mt_reader *r, const mt_key *key, mt_addr object, void *item)
+{
+    mt_model *const m = item;
+    mt_items items = mt_reader_items(r, object);
+    (void)key;
+    const int n = items.count;
+    int n_more = 0;
+    const char *const *const more = mt_expr_names(&n_more);
+    const char **const names =
+        mt_arena_alloc(&m->mem, (size_t)n + (size_t)n_more, sizeof *names);
+    m->parameters = mt_reader_room(r, &items, sizeof *m->parameters);
+    if (mt_arena_failed(&m->mem)) {
+        return;
+    }
+    m->cap_parameters = n;
+    int n_names = 0;
+    while (mt_items_next(&items)) {
+        mt_parameter *const p = &m->parameters[m->n_parameters++];
+        p->name = mt_reader_member_name(r, items.at, MT_NAME_PARAMETER);
+        p->value = MT_ABSENT;
+        if (p->name.s != NULL) {
+            names[n_names++] = p->name.s;
+        }
+    }
+    for (int i = 0; i < n_more; i++) {
+        names[n_names++] = more[i];
+    }
+    r->names = names;
+    r->n_names = n_names;
+    mt_model_index_parameters(m);
+    items = mt_reader_items(r, object);
+    for (int k = 0; !mt_arena_failed(&m->mem) && mt_items_next(&items); k++) {
+        read_parameter(r, items.at, &m->parameters[k]);
+    }
+    mt_model_find_kinds(m);
+    r->kinds = mt_model_kind;
+    check_kinds(mt_model_reader_of(r));
 }
 
 /* A word of a member's name that is a unit, or "/"; NULL: another. */
@@ -321,14 +441,12 @@ static bool unit_of_parameter(const void *context, int parameter, mt_unit_worth 
 static const char *name_of_powers(const mt_unit_worth *is, char text[MEMBER_UNIT])
 {
     static const char *const bases[] = {"m", "kg", "s"};
-    int n = 0;
     size_t used = 0;
     mt_unit_worth has;
-    const char *const *const names = mt_model_units(&n);
-    for (int i = 0; i < n; i++) {
-        if (mt_unit_read(names[i], MT_READ_MASSES, &has) && has.factor == 1.0 &&
+    for (int i = 0; i < MT_COUNT(UNITS); i++) {
+        if (mt_unit_read(UNITS[i], MT_READ_MASSES, &has) && has.factor == 1.0 &&
             mt_unit_same_powers(is, &has, true)) {
-            return names[i];
+            return UNITS[i];
         }
     }
     text[0] = '\0';

@@ -136,7 +136,8 @@ static void check_lumped(mt_resolve *f, const mt_link *l)
     static const char rigid[] = "a link of rigid elements";
     const int n = l->elements;
     wants(f, l, l->shear.given, false, "shear", rigid);
-    wants(f, l, l->rotary_addr != MT_NO_ADDR, false, "rotary_inertia", rigid);
+    wants(f, l, mt_diag_member(f->d, l->addr, "rotary_inertia") != l->addr, false,
+          "rotary_inertia", rigid);
     if (f->m->dimension == 2) {
         wants(f, l, l->shear_modulus != MT_ABSENT, false, "shear_modulus_pa",
               "a link in two dimensions");

@@ -50,11 +50,11 @@ static void check_joint(mt_resolve *f, const mt_load *l)
         }
     }
     if (l->has_force && !l->one_number) {
-        mt_diag_error(f->d, l->force_addr,
+        mt_diag_error(f->d, mt_diag_member(f->d, l->addr, "force_n"),
                       "must be one number: the force acts along joint \"%s\"", l->joint_name.s);
     }
     if (l->moment_vector) {
-        mt_diag_error(f->d, l->moment_addr,
+        mt_diag_error(f->d, mt_diag_member(f->d, l->addr, "moment_n_m"),
                       "must be one number: the moment acts about joint \"%s\"",
                       l->joint_name.s);
     }
@@ -68,11 +68,12 @@ static void check_body(mt_resolve *f, const mt_load *l)
     mt_resolve_needs_attach(f, l->name, "load", &l->in, &l->on);
     const bool point_mass = mt_resolve_is_point_mass(f, &l->on);
     if (l->has_force && l->one_number) {
-        mt_diag_error(f->d, l->force_addr, "must be a list: the force along %s",
+        mt_diag_error(f->d, mt_diag_member(f->d, l->addr, "force_n"),
+                      "must be a list: the force along %s",
                       f->m->dimension == 2 ? "x and y" : "x, y and z");
     }
     if (l->has_moment && (f->m->dimension == 3 || l->moment_vector)) {
-        mt_diag_error(f->d, l->moment_addr, "%s",
+        mt_diag_error(f->d, mt_diag_member(f->d, l->addr, "moment_n_m"), "%s",
                       f->m->dimension == 2
                           ? "must be one number: the moment about z"
                           : "a moment of constant direction in space has no potential: put it "

@@ -57,8 +57,8 @@ static void on_part(mt_resolve *f, mt_sensor *s)
         return;
     }
     if ((s->directions & ROTATIONS) != 0) {
-        mt_diag_error(f->d, s->directions_addr, "\"%s\" is a point mass, which does not turn",
-                      s->on_name.s);
+        mt_diag_error(f->d, mt_diag_member(f->d, s->addr, "directions"),
+                      "\"%s\" is a point mass, which does not turn", s->on_name.s);
     }
     if (s->at.given && !mt_resolve_same_position(f->m, &s->at, &f->m->bodies[a.index].centre)) {
         mt_diag_error(f->d, s->at.addr,
@@ -79,7 +79,7 @@ void mt_resolve_sensors(mt_resolve *f)
             on_part(f, s);
         }
         if (f->m->dimension == 2 && (s->directions & ~(unsigned)PLANAR) != 0) {
-            mt_diag_error(f->d, s->directions_addr,
+            mt_diag_error(f->d, mt_diag_member(f->d, s->addr, "directions"),
                           "directions in two dimensions are x, y and r");
         }
     }

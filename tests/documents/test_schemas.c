@@ -86,6 +86,8 @@ static void add_list(mt_text *out, const mt_key *key)
     if (key->of != NULL) {
         /* kinds of goals are told apart by their type */
         mt_text_addf(out, "\"$ref\": \"#/definitions/%s\"", key->of->what);
+    } else if (key->possible != MT_POSSIBLE_NONE) {
+        mt_text_add(out, "\"$ref\": \"#/definitions/number\"");
     } else {
         add_string_type(out, key);
     }
@@ -116,6 +118,12 @@ static void add_type(mt_test *t, mt_text *out, const mt_key *key)
         add_reference(out, "number");
     } else if (key->type == MT_KEY_NUMBERS) {
         add_reference(out, "pair");
+    } else if (key->type == MT_KEY_NUMBER_OR_LIST) {
+        mt_text_add(out, "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {");
+        add_list(out, key);
+        mt_text_add(out, "}]");
+    } else if (key->type == MT_KEY_TEXT_OR_LIST) {
+        add_reference(out, "position");
     } else {
         mt_test_row(t, "member \"%s\"", key->name);
         CHECK_INT(t, key->type, MT_KEY_TEXT_OR_COUNT);
