@@ -12,7 +12,6 @@
 #include "io/write_json.h"
 #include "mechanics/info.h"
 #include "mechanics/linear.h"
-#include "model/joint.h"
 #include "model/model.h"
 #include "model/values.h"
 #include "report/table.h"

@@ -9,8 +9,8 @@
 #include "cli/cli.h"
 #include "mechanics/position.h"
 #include "mechanics/sweep.h"
-#include "model/joint.h"
-#include "model/setting.h"
+#include "model/model.h"
+#include "model/values.h"
 #include "report/table.h"
 
 /* The drive and the positions of --drive and --hold. */

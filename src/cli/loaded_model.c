@@ -7,9 +7,8 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
-#include "model/joint.h"
 #include "model/lint.h"
-#include "model/setting.h"
+#include "model/model.h"
 #include "model/values.h"
 #include "result/folder.h"
 

@@ -125,7 +125,6 @@
         .name = (label), .type = MT_KEY_OBJECT, .required = (must),          \
         MT_M_TO(mt_read_inner, part, m), .of = &(table), .says = __VA_ARGS__ \
     }
-#define MT_M_STRUCT(label, of_type, m, table) MT_M_PART(label, false, m, of_type, table, NULL)
 /* Structs and their number (int); a list that must not be empty is called `kind` in messages,
  * else NULL. An item that is no such object is left out. */
 #define MT_M_ITEMS(label, must, m, n, item, kind, table, ...)                           \

@@ -7,7 +7,7 @@
 /* Numbers that override those of the files. */
 typedef struct mt_overrides {
     int n_sets;
-    const char *const *sets;  /* NAME=VALUE (model/setting.h), of the study's own model */
+    const char *const *sets;  /* NAME=VALUE (model/values.h), of the study's own model */
     long seed;                /* -1: as the study says */
     long starts;              /* 0: as the study says */
     long max_evaluations;     /* 0: as the study says */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "model/joint.h"
+#include "model/model.h"
 
 /* Numbers, vectors, bodies, measures. */
 

@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "mechanics/tangent.h"
-#include "model/joint.h"
+#include "model/model.h"
 
 enum { GROUP = 4, AXES = 3 };
 

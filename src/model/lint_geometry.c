@@ -4,13 +4,559 @@
  * points that only closing brings together, sizes. With a segment P + s d, 0 <= s <= 1, the
  * distance of a point X is |X - P - clamp(d . (X - P) / d . d) d|.
  */
-#include "model/lint_priv.h"
+#include "model/lint_geometry.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 
-#include "model/joint.h"
+#include "base/format.h"
+#include "base/possible.h"
+#include "model/lint.h"
+#include "model/model.h"
+
+mt_warning *mt_lint_addr(mt_lint *j, mt_warning *warning, mt_addr addr, const char *pointer)
+{
+    if (warning == NULL) {
+        return NULL;
+    }
+    warning->addr = addr;
+    warning->pointer = pointer;
+    warning->file = j->model->path;
+    warning->configuration = j->model->configurations[j->configuration].name.s;
+    if (!mt_model_locate(j->model, addr, &warning->line, &warning->column)) {
+        warning->line = 0;
+        warning->column = 0;
+    }
+    return warning;
+}
+
+const char *mt_lint_drive_pointer(const mt_lint *j, const char *member)
+{
+    const mt_configuration *c = &j->model->configurations[j->configuration];
+    while (c->drive.inherited && c->like != MT_ABSENT) {
+        c = &j->model->configurations[c->like];
+    }
+    return mt_arena_printf(j->out->mem, "/configurations/%s/drive/%s", c->name.s, member);
+}
+
+/* The coordinates of a position; false: not known. */
+static bool lint_position(const mt_lint *j, const mt_position *p, double x[3])
+{
+    const mt_num *const own = p->point >= 0 ? j->model->points[p->point].x : p->x;
+    bool known = true;
+    for (int k = 0; k < 3; k++) {
+        x[k] = own[k] == MT_ABSENT ? 0.0 : j->value[own[k]];
+        known = known && isfinite(x[k]);
+    }
+    return known && own[0] != MT_ABSENT;
+}
+
+/*
+ * What no mechanism is built like, by several numbers at once. A spring matrix is the second
+ * derivative of an energy and therefore symmetric. What acts along the line between two points
+ * needs two points.
+ */
+
+enum { AXES = 3, MATRIX = 6 };
+/* Of the entries: what six printed digits leave open. */
+static const double MATRIX_ROUNDING = 1e-6;
+/* Of sqrt(K_ii K_jj): an entry so small is what a transformation left of 0. */
+static const double MATRIX_NOISE = 1e-9;
+/* Of the coordinates' size: points that differ by rounding are the same point. */
+static const double SAME_POINT = 1e-14;
+
+static mt_addr addr_of(const mt_lint *j, mt_num num, mt_addr other)
+{
+    return num == MT_ABSENT ? other : j->model->nums[num].addr;
+}
+
+/* Check symmetry of a bushing's matrix; an error is reported at the later of the two
+ * entries. */
+static void lint_matrix(mt_lint *j, const mt_item *item, const mt_spring *s)
+{
+    double k[MATRIX * MATRIX];
+    for (int i = 0; s->matrix != NULL && i < MATRIX * MATRIX; i++) {
+        k[i] = s->matrix[i] == MT_ABSENT ? 0.0 : j->value[s->matrix[i]];
+    }
+    for (int row = 1; s->matrix != NULL && row < MATRIX; row++) {
+        for (int column = 0; column < row; column++) {
+            const double below = k[(MATRIX * row) + column];
+            const double above = k[(MATRIX * column) + row];
+            const double size = fmax(fabs(below), fabs(above));
+            const double noise = sqrt(fabs(k[((ptrdiff_t)MATRIX + 1) * row])) *
+                                 sqrt(fabs(k[((ptrdiff_t)MATRIX + 1) * column])) * MATRIX_NOISE;
+            if (!(fabs(below - above) > fmax(MATRIX_ROUNDING * size, noise))) {
+                continue;
+            }
+            (void)mt_lint_addr(
+                j,
+                mt_warning_add(
+                    j->out, MT_LEVEL_FAULT, "symmetric",
+                    "%s \"%s\": stiffness_matrix is not symmetric: its entry [%d][%d] "
+                    "is %g and [%d][%d] is %g (counted from 0); what has no energy, as "
+                    "the cross-coupling of a bearing, cannot be a spring",
+                    item->what, item->name, row, column, below, column, row, above),
+                addr_of(j, s->matrix[(MATRIX * row) + column], s->name.addr),
+                mt_arena_printf(j->out->mem, "/%s/%d/stiffness_matrix/%d/%d", item->list,
+                                item->index, row, column));
+            return;
+        }
+    }
+}
+
+/* The position of one side of an item between two points: its `at`, otherwise the centre of the
+ * body. */
+static bool side_of(const mt_lint *j, const mt_attach *body, int n_at, const mt_position *at,
+                    double x[3])
+{
+    const mt_position *where = n_at > 0 ? at : NULL;
+    const bool centre = where == NULL && body->kind == MT_ATTACH_BODY && body->index >= 0;
+    if (centre) {
+        where = &j->model->bodies[body->index].centre;
+    }
+    x[0] = x[1] = x[2] = 0.0; /* the ground's */
+    return where != NULL ? lint_position(j, where, x) : body->kind == MT_ATTACH_GROUND;
+}
+
+static bool are_apart(const double a[3], const double b[3])
+{
+    double way = 0.0;
+    double size = 0.0;
+    for (int k = 0; k < AXES; k++) {
+        way = fmax(way, fabs(a[k] - b[k]));
+        size = fmax(size, fmax(fabs(a[k]), fabs(b[k])));
+    }
+    return way > SAME_POINT * size;
+}
+
+static void lint_line(mt_lint *j, const mt_item *item, const mt_attach bodies[2], int n_at,
+                      const mt_position at[2], mt_addr name)
+{
+    double x[2][AXES];
+    for (int side = 0; side < 2; side++) {
+        if (bodies[side].name.s == NULL ||
+            !side_of(j, &bodies[side], n_at, &at[n_at == 2 ? side : 0], x[side])) {
+            return;
+        }
+    }
+    if (are_apart(x[0], x[1])) {
+        return;
+    }
+    (void)mt_lint_addr(
+        j,
+        mt_warning_add(
+            j->out, MT_LEVEL_FAULT, "coincident",
+            "%s \"%s\": its two points coincide (%g, %g, %g): it acts along the line "
+            "between them, which has no direction%s",
+            item->what, item->name, x[0][0], x[0][1], x[0][2],
+            n_at > 0 ? "" : "; give \"at\": the point on each body"),
+        n_at == 2 ? at[1].addr : name,
+        mt_arena_printf(j->out->mem, n_at == 2 ? "/%s/%d/at/1" : "/%s/%d", item->list,
+                        item->index));
+}
+
+/* A drive takes the points apart before anything is asked of a spring whose free length does
+ * not come from the drawing. */
+static bool needs_drawn_length(const mt_lint *j, const mt_spring *s)
+{
+    return !j->model->configurations[j->configuration].drive.given ||
+           s->free_length == MT_ABSENT;
+}
+
+static double direction_of_axis(const mt_lint *j, const mt_num axis[3], double x[3])
+{
+    double largest = 0.0;
+    for (int k = 0; k < AXES; k++) {
+        x[k] = axis[k] == MT_ABSENT ? 0.0 : j->value[axis[k]];
+        largest = fmax(largest, fabs(x[k]));
+    }
+    for (int k = 0; k < AXES && largest > 0.0; k++) {
+        x[k] /= largest;
+    }
+    return largest;
+}
+
+static void fault_axis(mt_lint *j, const mt_item *item, const mt_num axis[3], mt_addr name,
+                       const char *member, const char *why)
+{
+    (void)mt_lint_addr(
+        j,
+        mt_warning_add(j->out, MT_LEVEL_FAULT, "axis", "%s \"%s\": %s %s", item->what,
+                       item->name, member, why),
+        addr_of(j, axis[0], name),
+        mt_arena_printf(j->out->mem, "/%s/%d/%s", item->list, item->index, member));
+}
+
+static void lint_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
+{
+    static const double PARALLEL = 1e-9; /* sine of the angle between */
+    static const char NO_LENGTH[] = "has length 0 and no direction";
+    double a[AXES];
+    double b[AXES];
+    const double first = joint->has_axis ? direction_of_axis(j, joint->axis, a) : 1.0;
+    const double second = joint->has_axis_b ? direction_of_axis(j, joint->axis_b, b) : 1.0;
+    if (first == 0.0) {
+        fault_axis(j, item, joint->axis, joint->name.addr, "axis", NO_LENGTH);
+    }
+    if (second == 0.0) {
+        fault_axis(j, item, joint->axis_b, joint->name.addr, "axis_b", NO_LENGTH);
+    }
+    if (!joint->has_axis || !joint->has_axis_b || first == 0.0 || second == 0.0) {
+        return;
+    }
+    double across = 0.0;
+    for (int k = 0; k < AXES; k++) {
+        const int n = (k + 1) % AXES;
+        across = fmax(across, fabs((a[k] * b[n]) - (a[n] * b[k])));
+    }
+    if (across < PARALLEL) {
+        fault_axis(
+            j, item, joint->axis_b, joint->name.addr, "axis_b",
+            "is parallel to axis: two axes along the same line do not make a universal joint");
+    }
+}
+
+/* Check that a link's hinge axis has a direction and is perpendicular to the link. */
+static void lint_hinge_axis(mt_lint *j, int i, const mt_link *l)
+{
+    static const double NOT_PERPENDICULAR = 1e-6; /* cosine; as the mechanism is built */
+    const mt_item item = {"link", "links", i, l->name.s};
+    double axis[AXES];
+    double from[AXES];
+    double to[AXES];
+    if (!l->has_hinge_axis || j->model->dimension == 2) {
+        return;
+    }
+    if (direction_of_axis(j, l->hinge_axis, axis) == 0.0) {
+        fault_axis(j, &item, l->hinge_axis, l->name.addr, "hinge_axis",
+                   "has length 0 and no direction");
+        return;
+    }
+    if (!lint_position(j, &l->from, from) || !lint_position(j, &l->to, to)) {
+        return;
+    }
+    double dot = 0.0;
+    double a = 0.0;
+    double b = 0.0;
+    for (int k = 0; k < AXES; k++) {
+        const double along = to[k] - from[k];
+        dot += axis[k] * along;
+        a = hypot(a, axis[k]);
+        b = hypot(b, along);
+    }
+    if (fabs(dot) > NOT_PERPENDICULAR * a * b) {
+        fault_axis(j, &item, l->hinge_axis, l->name.addr, "hinge_axis",
+                   "is not perpendicular to the link");
+    }
+}
+
+static void lint_ends(mt_lint *j, int i, const mt_link *l)
+{
+    double from[AXES];
+    double to[AXES];
+    if (!lint_position(j, &l->from, from) || !lint_position(j, &l->to, to) ||
+        are_apart(from, to)) {
+        return;
+    }
+    (void)mt_lint_addr(j,
+                       mt_warning_add(j->out, MT_LEVEL_FAULT, "coincident",
+                                      "link \"%s\" begins and ends at the same point (%g, %g, "
+                                      "%g)",
+                                      l->name.s, from[0], from[1], from[2]),
+                       l->name.addr, mt_arena_printf(j->out->mem, "/links/%d", i));
+}
+
+void mt_lint_structure(mt_lint *j)
+{
+    const mt_model *const m = j->model;
+    int dampers = 0;
+    for (int i = 0; i < m->n_links; i++) {
+        if (mt_model_present(&m->links[i].in, j->configuration)) {
+            lint_ends(j, i, &m->links[i]);
+            lint_hinge_axis(j, i, &m->links[i]);
+        }
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const s = &m->springs[i];
+        const mt_item item = {s->damper ? "damper" : "spring",
+                              s->damper ? "dampers" : "springs", s->damper ? dampers++ : i,
+                              s->name.s};
+        const bool line =
+            (s->type == MT_SPRING_AXIAL && s->joint_name.s == NULL) || s->type == MT_SPRING_BAR;
+        if (!mt_model_present(&s->in, j->configuration)) {
+            continue;
+        }
+        lint_matrix(j, &item, s);
+        if (line && needs_drawn_length(j, s)) {
+            lint_line(j, &item, s->bodies, s->n_at, s->at, s->name.addr);
+        }
+    }
+    for (int i = 0; i < m->n_joints; i++) {
+        const mt_joint *const joint = &m->joints[i];
+        const mt_item item = {"joint", "joints", i, joint->name.s};
+        if (!mt_model_present(&joint->in, j->configuration)) {
+            continue;
+        }
+        lint_axes(j, &item, joint);
+        if (mt_joint_kind_of(joint->type)->closes == MT_CLOSES_LENGTH) {
+            lint_line(j, &item, joint->bodies, joint->n_at, joint->at, joint->name.addr);
+        }
+    }
+}
+
+/* What is possible and hardly meant, beside single numbers: gravity that points up, bushings
+ * whose two points are apart, and what a kind of link leaves out. */
+
+/* A bushing's two points so far apart, in parts of the drawing's size, are two points. */
+static const double BUSHING_APART = 0.01;
+
+/* Of the drawing's size, what a point is placed away from the origin, and a unit is small. */
+static const double LEAST_PLACED = 0.05;
+static const double MOST_NEAR = 100.0;
+
+/* m/s^2: a load factor of an aircraft or a rocket is below 20. */
+static const double MOST_GRAVITY = 200.0;
+static const double LEAST_MULTIPLE = 0.5;
+static const double MOST_MULTIPLE = 1.5;
+
+enum { PLACE = 96 };
+
+/* Whose gravity is in force: its pointer, and its numbers. */
+static const char *gravity_pointer(const mt_lint *j)
+{
+    const mt_model *const m = j->model;
+    const mt_num own = m->configurations[j->configuration].gravity[0];
+    int c = j->configuration;
+    if (m->has_gravity && m->gravity[0] == own) {
+        return "/gravity_m_per_s2";
+    }
+    for (int like = m->configurations[c].like;
+         like != MT_ABSENT && m->configurations[like].gravity[0] == own;
+         like = m->configurations[c].like) {
+        c = like;
+    }
+    return mt_arena_printf(j->out->mem, "/configurations/%s/gravity_m_per_s2",
+                           m->configurations[c].name.s);
+}
+
+/* In cm/s^2 or mm/s^2, or as a multiple of the earth's: between the moon's 1.62 and nothing. */
+static void lint_gravity_size(mt_lint *j, const double g[AXES], int most)
+{
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
+    const double size = hypot(hypot(g[0], g[1]), g[2]);
+    const bool multiple = size > LEAST_MULTIPLE && size < MOST_MULTIPLE;
+    if (!multiple && !(size > MOST_GRAVITY)) {
+        return;
+    }
+    (void)mt_lint_addr(j,
+                       mt_warning_add(j->out, MT_LEVEL_WARNING, "gravity",
+                                      multiple
+                                          ? "gravity_m_per_s2 has a size of %.4g m/s^2: is "
+                                            "a multiple of 9.81 m/s^2 meant?"
+                                          : "gravity_m_per_s2 has a size of %.4g m/s^2, more "
+                                            "than 20 times the earth's: is the unit m/s^2?",
+                                      size),
+                       j->model->nums[c->gravity[most]].addr, gravity_pointer(j));
+}
+
+/* Along +y of a plane, +y or +z of space, more than along any other axis. */
+static void lint_gravity(mt_lint *j)
+{
+    static const char *const axes[] = {"x", "y", "z"};
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
+    double g[AXES] = {0.0, 0.0, 0.0};
+    int most = 0;
+    if (!c->has_gravity) {
+        return;
+    }
+    for (int k = 0; k < AXES; k++) {
+        g[k] = c->gravity[k] == MT_ABSENT ? 0.0 : j->value[c->gravity[k]];
+        most = fabs(g[k]) > fabs(g[most]) ? k : most;
+    }
+    lint_gravity_size(j, g, most);
+    if (most == 0 || !(g[most] > 0.0)) {
+        return;
+    }
+    (void)mt_lint_addr(
+        j,
+        mt_warning_add(
+            j->out, MT_LEVEL_WARNING, "gravity",
+            "gravity_m_per_s2 is %g along +%s, which is up where %s is the height: is "
+            "%g meant?",
+            g[most], axes[most], axes[most], -g[most]),
+        j->model->nums[c->gravity[most]].addr, gravity_pointer(j));
+}
+
+/* Negative damping, which adds energy to a motion. */
+static void lint_damper(mt_lint *j, const mt_item *item, const mt_spring *s)
+{
+    const mt_num all[] = {s->stiffness,      s->translation[0], s->translation[1],
+                          s->translation[2], s->rotation[0],    s->rotation[1],
+                          s->rotation[2]};
+    for (int k = 0; k < MT_COUNT(all); k++) {
+        if (all[k] != MT_ABSENT && j->value[all[k]] < 0.0) {
+            (void)mt_lint_addr(
+                j,
+                mt_warning_add(j->out, MT_LEVEL_NOTE, "damper",
+                               "damper \"%s\" has a negative coefficient (%g): it feeds the "
+                               "motion",
+                               item->name, j->value[all[k]]),
+                j->model->nums[all[k]].addr,
+                mt_arena_printf(j->out->mem, "/%s/%d", item->list, item->index));
+            return;
+        }
+    }
+}
+
+static const char *point_text(const mt_lint *j, const double x[3], char out[PLACE])
+{
+    (void)(j->model->dimension == 2
+               ? mt_snprintf(out, PLACE, "(%.4g, %.4g) m", x[0], x[1])
+               : mt_snprintf(out, PLACE, "(%.4g, %.4g, %.4g) m", x[0], x[1], x[2]));
+    return out;
+}
+
+/* The forces of a bushing act at its second point, on both bodies. */
+static void lint_bushing(mt_lint *j, const mt_item *item, const mt_spring *s, double size)
+{
+    double x[2][AXES] = {{0.0}};
+    char place[PLACE];
+    mt_arena *const mem = j->out->mem;
+    const mt_attach *const second = &s->bodies[1];
+    if (s->n_at == 2 && lint_position(j, &s->at[0], x[0]) &&
+        lint_position(j, &s->at[1], x[1])) {
+        const double apart =
+            hypot(hypot(x[1][0] - x[0][0], x[1][1] - x[0][1]), x[1][2] - x[0][2]);
+        if (!(apart > BUSHING_APART * size)) {
+            return;
+        }
+        mt_warning *const warning =
+            mt_warning_add(j->out, MT_LEVEL_WARNING, "bushing",
+                           "%s \"%s\": its two points are %.4g m apart; its forces act at the "
+                           "second, %s, on both bodies",
+                           item->what, item->name, apart, point_text(j, x[1], place));
+        if (mt_lint_addr(j, warning, s->at[1].addr,
+                         mt_arena_printf(mem, "/%s/%d/at/1", item->list, item->index)) !=
+            NULL) {
+            warning->size = apart;
+        }
+        return;
+    }
+    if (s->n_at > 0 || second->name.s == NULL) {
+        return;
+    }
+    const bool body = second->kind == MT_ATTACH_BODY && second->index >= 0;
+    const bool known = body ? lint_position(j, &j->model->bodies[second->index].centre, x[1])
+                            : second->kind == MT_ATTACH_GROUND;
+    const char *const of = second->kind == MT_ATTACH_GROUND ? "the origin" : "the centre of ";
+    (void)mt_lint_addr(
+        j,
+        mt_warning_add(j->out, MT_LEVEL_NOTE, "bushing",
+                       "%s \"%s\" has no \"at\": its forces act at %s%s%s%s%s%s", item->what,
+                       item->name, of, second->kind == MT_ATTACH_GROUND ? "" : "\"",
+                       second->kind == MT_ATTACH_GROUND ? "" : second->name.s,
+                       second->kind == MT_ATTACH_GROUND ? "" : "\"", known ? ", " : "",
+                       known ? point_text(j, x[1], place) : ""),
+        s->name.addr, mt_arena_printf(mem, "/%s/%d", item->list, item->index));
+}
+
+/* Rigid elements are joined by hinges about one axis. */
+const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
+                                mt_arena *mem)
+{
+    const mt_link *const l = &model->links[link];
+    if (model->dimension == 2 || l->kind == MT_LINK_BEAM || l->elements < 2 ||
+        !mt_model_present(&l->in, configuration)) {
+        return NULL;
+    }
+    return mt_arena_printf(
+        mem,
+        "link \"%s\" of rigid elements bends about its hinge axis only: about "
+        "the other axis, and in torsion, it is rigid (\"kind\": \"beam\" bends "
+        "about both)",
+        l->name.s);
+}
+
+static bool is_bare(const mt_number *number)
+{
+    return number->expr.length == 1 && number->expr.code[0].op == MT_OP_CONST;
+}
+
+/* In a file of millimetres a point at (-0.42, 0.15, -0.06) is next to the origin, and as metres
+ * within the drawing: two bare coordinates or more below one unit, and none above. */
+static void lint_point(mt_lint *j, const mt_point *p, const mt_unit *unit, double size)
+{
+    const mt_number *const nums = j->model->nums;
+    const double factor = mt_unit_factor(unit);
+    double metres = 0.0; /* if they are */
+    int small = 0;
+    mt_num first = MT_ABSENT;
+    for (int k = 0; k < j->model->dimension; k++) {
+        const double x = fabs(j->value[p->x[k]]);
+        if (!(x < factor) || (x > 0.0 && !is_bare(&nums[p->x[k]]))) {
+            return;
+        }
+        metres = fmax(metres, x / factor);
+        small += x > 0.0 ? 1 : 0;
+        first = x > 0.0 && first == MT_ABSENT ? p->x[k] : first;
+    }
+    if (small < 2 || !(metres > LEAST_PLACED * size) || !(metres < size) ||
+        !(size > MOST_NEAR * factor)) {
+        return;
+    }
+    (void)mt_lint_addr(
+        j,
+        mt_warning_add(
+            j->out, MT_LEVEL_WARNING, "size",
+            "point \"%s\" lies within 1 %s of the origin, in a drawing %.4g m wide: is "
+            "it meant in metres?",
+            p->name.s, unit->name, size),
+        nums[first].addr, mt_arena_printf(j->out->mem, "/points/%s", p->name.s));
+}
+
+static void lint_points(mt_lint *j, double size)
+{
+    const mt_unit *const unit = j->model->units[MT_LENGTH];
+    for (int i = 0; unit != NULL && !mt_unit_is_si(unit) && i < j->model->n_points; i++) {
+        lint_point(j, &j->model->points[i], unit, size);
+    }
+}
+
+/* Gravity that points up, bushings with two points, links that bend about one axis
+ *. size: of the drawing [m]. */
+static void lint_suspicious(mt_lint *j, double size)
+{
+    const mt_model *const m = j->model;
+    int dampers = 0;
+    lint_gravity(j);
+    lint_points(j, size);
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const s = &m->springs[i];
+        const mt_item item = {s->damper ? "damper" : "spring",
+                              s->damper ? "dampers" : "springs", s->damper ? dampers++ : i,
+                              s->name.s};
+        if (!mt_model_present(&s->in, j->configuration)) {
+            continue;
+        }
+        if (s->type == MT_SPRING_BUSHING) {
+            lint_bushing(j, &item, s, size);
+        }
+        if (s->damper) {
+            lint_damper(j, &item, s);
+        }
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        const char *const limit = mt_model_link_limit(m, j->configuration, i, j->out->mem);
+        if (limit != NULL) {
+            (void)mt_lint_addr(
+                j, mt_warning_add(j->out, MT_LEVEL_NOTE, "one_axis", "%s", limit),
+                m->links[i].name.addr, mt_arena_printf(j->out->mem, "/links/%d", i));
+        }
+    }
+}
+
+/* Joints and springs off what they hold, and sizes. */
 
 /* A joint this part of a link's length away from it is told: less is a drawing's rounding. */
 static const double TOLD_OFF = 0.01;
@@ -63,19 +609,8 @@ static double distance(const double a[3], const double b[3])
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-bool mt_lint_position(const mt_lint *j, const mt_position *p, double x[3])
-{
-    const mt_num *const own = p->point >= 0 ? j->model->points[p->point].x : p->x;
-    bool known = true;
-    for (int k = 0; k < 3; k++) {
-        x[k] = own[k] == MT_ABSENT ? 0.0 : j->value[own[k]];
-        known = known && isfinite(x[k]);
-    }
-    return known && own[0] != MT_ABSENT;
-}
-
 /* The address of the first number of a position, for messages. */
-static mt_addr addr_of(const mt_position *p)
+static mt_addr address_of_position(const mt_position *p)
 {
     return p->addr;
 }
@@ -83,7 +618,7 @@ static mt_addr addr_of(const mt_position *p)
 static void include_position(const mt_lint *j, box *b, const mt_position *p)
 {
     double x[3];
-    if (!mt_lint_position(j, p, x)) {
+    if (!lint_position(j, p, x)) {
         return;
     }
     for (int k = 0; k < 3; k++) {
@@ -169,8 +704,7 @@ static segment segment_of(const mt_lint *j, const mt_attach *a)
     const mt_link *const l = &j->model->links[a->index];
     double from[3];
     double to[3];
-    segment s = {.known =
-                     mt_lint_position(j, &l->from, from) && mt_lint_position(j, &l->to, to)};
+    segment s = {.known = lint_position(j, &l->from, from) && lint_position(j, &l->to, to)};
     if (!s.known || l->elements < 1) {
         s.known = false;
         return s;
@@ -207,7 +741,7 @@ static bool is_on(const mt_attach *a, int body)
 static double nearer(const mt_lint *j, const mt_position *p, const double x[3], double least)
 {
     double other[3];
-    return mt_lint_position(j, p, other) ? fmin(least, distance(other, x)) : least;
+    return lint_position(j, p, other) ? fmin(least, distance(other, x)) : least;
 }
 
 /* The point of `at` that is body `side`'s. */
@@ -275,7 +809,7 @@ static void say_off(mt_lint *j, const holder *h, int side, mt_warning_level leve
         h->n_at == 2
             ? mt_arena_printf(j->out->mem, "/%s/%d/at/%d", h->item.list, h->item.index, side)
             : mt_arena_printf(j->out->mem, "/%s/%d/at", h->item.list, h->item.index);
-    if (mt_lint_addr(j, warning, addr_of(p), pointer) != NULL) {
+    if (mt_lint_addr(j, warning, address_of_position(p), pointer) != NULL) {
         warning->size = off;
     }
 }
@@ -285,7 +819,7 @@ static void lint_side(mt_lint *j, const holder *h, int side)
     const mt_attach *const a = &h->bodies[side];
     double x[3];
     if (a->name.s == NULL || a->kind == MT_ATTACH_GROUND || h->n_at == 0 ||
-        !mt_lint_position(j, side_at(h->n_at, h->at, side), x)) {
+        !lint_position(j, side_at(h->n_at, h->at, side), x)) {
         return;
     }
     if (a->kind == MT_ATTACH_BODY && j->model->n_joints + j->model->n_springs > MOST_COMPARED) {
@@ -321,8 +855,8 @@ static double gap_of(const mt_lint *j, const mt_joint *joint)
     double d[3];
     double axis[3];
     double dot = 0.0;
-    if (joint->n_at != 2 || !mt_lint_position(j, &joint->at[0], a) ||
-        !mt_lint_position(j, &joint->at[1], b)) {
+    if (joint->n_at != 2 || !lint_position(j, &joint->at[0], a) ||
+        !lint_position(j, &joint->at[1], b)) {
         return nan("");
     }
     const mt_closes closes = mt_joint_kind_of(joint->type)->closes;
@@ -367,7 +901,7 @@ static void lint_gap(mt_lint *j, const mt_item *item, const mt_joint *joint, dou
         "joint \"%s\": its two points are drawn %.4g m apart; the bodies are moved until it "
         "closes",
         item->name, gap);
-    if (mt_lint_addr(j, warning, addr_of(&joint->at[1]),
+    if (mt_lint_addr(j, warning, address_of_position(&joint->at[1]),
                      mt_arena_printf(j->out->mem, "/joints/%d/at/1", item->index)) != NULL) {
         warning->size = gap;
     }
@@ -413,7 +947,7 @@ static void lint_stout(mt_lint *j, const mt_item *item, const mt_link *l)
     const mt_num numbers[] = {l->section.width, l->section.height, l->section.diameter};
     double from[3];
     double to[3];
-    if (!mt_lint_position(j, &l->from, from) || !mt_lint_position(j, &l->to, to) ||
+    if (!lint_position(j, &l->from, from) || !lint_position(j, &l->to, to) ||
         l->section.shape == MT_SECTION_NONE || l->section.shape == MT_SECTION_GENERAL) {
         return;
     }
@@ -584,5 +1118,5 @@ void mt_lint_geometry(mt_lint *j)
     }
     lint_size(j, size);
     lint_stroke(j, size);
-    mt_lint_suspicious(j, size);
+    lint_suspicious(j, size);
 }

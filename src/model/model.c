@@ -1,13 +1,138 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a model is made of: its items by name, the kinds of joints, units and kinds of
+ * parameters. */
 #include "model/model.h"
 
 #include "modetune/model.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "expr/units.h"
-#include "model/names.h"
+
+/* A name of so many bytes. */
+typedef struct part {
+    const char *s;
+    size_t length;
+} part;
+
+static int compare_with_name(const void *context, const void *key, int i)
+{
+    const mt_names *const t = context;
+    const part *const name = key;
+    const int order = strncmp(name->s, t->items[i].name, name->length);
+    return order != 0 || t->items[i].name[name->length] == '\0' ? order : -1;
+}
+
+void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken)
+{
+    const part key = {name, strlen(name)};
+    *taken = mt_sorted_find(&t->order, compare_with_name, t, &key) >= 0;
+    if (*taken) {
+        return;
+    }
+    mt_named *const items = mt_arena_grow(mem, t->items, t->count, &t->room, sizeof *items);
+    if (items == NULL) {
+        return;
+    }
+    t->items = items;
+    if (mt_sorted_add(&t->order, mem, compare_with_name, t, &key)) {
+        t->items[t->count++] = (mt_named){name, value};
+    }
+}
+
+int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found)
+{
+    const part key = {name, length};
+    const int i = mt_sorted_find(&t->order, compare_with_name, t, &key);
+    *found = i >= 0;
+    return *found ? t->items[i].value : MT_ABSENT;
+}
+
+static const mt_joint_kind KINDS[] = {
+    [MT_JOINT_FIXED] = {.in = {true, true},
+                        .closes = MT_CLOSES_ALL,
+                        .most_at = 2,
+                        .turns = {{true, true}, {true, true}}},
+    [MT_JOINT_REVOLUTE] = {.in = {true, true},
+                           .coordinate = MT_COORDINATE_ANGLE,
+                           .closes = MT_CLOSES_ALL,
+                           .least_at = 1,
+                           .most_at = 2,
+                           .axis = {false, true},
+                           .turns = {{false, false}, {true, true}}},
+    [MT_JOINT_PRISMATIC] = {.in = {true, true},
+                            .coordinate = MT_COORDINATE_DISPLACEMENT,
+                            .closes = MT_CLOSES_ACROSS,
+                            .least_at = 1,
+                            .most_at = 2,
+                            .axis = {true, true},
+                            .turns = {{true, true}, {true, true}}},
+    [MT_JOINT_PIN_IN_SLOT] = {.in = {true, false},
+                              .coordinate = MT_COORDINATE_DISPLACEMENT,
+                              .closes = MT_CLOSES_ACROSS,
+                              .least_at = 1,
+                              .most_at = 2,
+                              .axis = {true, true},
+                              .turns = {{true, false}, {true, false}}},
+    [MT_JOINT_DISTANCE] = {.in = {true, true},
+                           .closes = MT_CLOSES_LENGTH,
+                           .least_at = 2,
+                           .most_at = 2},
+    [MT_JOINT_CYLINDRICAL] = {.in = {false, true},
+                              .coordinate = MT_COORDINATE_ANGLE,
+                              .closes = MT_CLOSES_ACROSS,
+                              .least_at = 1,
+                              .most_at = 2,
+                              .axis = {false, true},
+                              .turns = {{true, true}, {true, true}}},
+    [MT_JOINT_SPHERICAL] = {.in = {false, true},
+                            .closes = MT_CLOSES_ALL,
+                            .least_at = 1,
+                            .most_at = 2},
+    [MT_JOINT_UNIVERSAL] = {.in = {false, true},
+                            .closes = MT_CLOSES_ALL,
+                            .least_at = 1,
+                            .most_at = 2,
+                            .axis = {false, true},
+                            .axis_b = true,
+                            .turns = {{true, true}, {true, true}}},
+    [MT_JOINT_PLANAR] = {.in = {false, true},
+                         .closes = MT_CLOSES_ALONG,
+                         .least_at = 1,
+                         .most_at = 2,
+                         .axis = {false, true},
+                         .turns = {{true, true}, {true, true}}},
+    [MT_JOINT_POINT_ON_LINE] = {.in = {false, true},
+                                .coordinate = MT_COORDINATE_DISPLACEMENT,
+                                .closes = MT_CLOSES_ACROSS,
+                                .least_at = 1,
+                                .most_at = 2,
+                                .axis = {false, true},
+                                .turns = {{true, false}, {true, false}}},
+    [MT_JOINT_POINT_ON_PLANE] = {.in = {false, true},
+                                 .closes = MT_CLOSES_ALONG,
+                                 .least_at = 1,
+                                 .most_at = 2,
+                                 .axis = {false, true},
+                                 .turns = {{true, false}, {true, false}}},
+    [MT_JOINT_ORIENTATION] = {.in = {true, true},
+                              .turns = {{true, true}, {true, true}},
+                              .article = "an"},
+    [MT_JOINT_GEAR] = {.in = {true, true}, .couples = true},
+    [MT_JOINT_RACK] = {.in = {true, true}, .couples = true},
+};
+
+const mt_joint_kind *mt_joint_kind_of(mt_joint_type type)
+{
+    return &KINDS[type];
+}
+
+const char *mt_joint_article(mt_joint_type type)
+{
+    return KINDS[type].article != NULL ? KINDS[type].article : "a";
+}
 
 mt_status mt_model_new(mt_model **out, mt_err *err)
 {
@@ -143,6 +268,7 @@ bool mt_model_present(const mt_presence *in, int configuration)
 #define NAME_CASE(id, name) \
     case id:                \
         return name;
+
 const char *mt_joint_type_name(mt_joint_type type)
 {
     switch (type) {
@@ -188,44 +314,6 @@ const mt_unit *mt_model_number_unit(const mt_model *model, int parameter)
 mt_kind mt_model_kind(const void *model, int parameter)
 {
     return ((const mt_model *)model)->parameters[parameter].kind;
-}
-
-static mt_kind kind_of_parameter(const mt_model *m, const mt_parameter *p)
-{
-    const mt_unit *const si = mt_parameter_si(p);
-    if (si != NULL) {
-        return mt_kind_of_dimension(si->dimension);
-    }
-    if (p->unit != NULL) {
-        return strcmp(p->unit, "1") == 0 ? MT_KIND_NUMBER : MT_KIND_UNKNOWN;
-    }
-    if (p->value == MT_ABSENT) {
-        return MT_KIND_UNKNOWN;
-    }
-    /* a 0 that somebody may change is a number */
-    const mt_kind kind = mt_expr_kind(&m->nums[p->value].expr, mt_model_kind, m).kind;
-    return kind == MT_KIND_ZERO ? MT_KIND_NUMBER : kind;
-}
-
-/* Expressions may refer to later and earlier parameters: passes forwards and backwards in turn
- * while something changes. A chain of parameters without units that needs more passes stays
- * unknown, which is not reported. */
-void mt_model_find_kinds(mt_model *model)
-{
-    enum { MOST_PASSES = 8 };
-    bool changed = true;
-    for (int i = 0; i < model->n_parameters; i++) {
-        model->parameters[i].kind = MT_KIND_UNKNOWN;
-    }
-    for (int pass = 0; changed && pass < MOST_PASSES; pass++) {
-        changed = false;
-        for (int k = 0; k < model->n_parameters; k++) {
-            const int i = pass % 2 == 0 ? k : model->n_parameters - 1 - k;
-            const mt_kind kind = kind_of_parameter(model, &model->parameters[i]);
-            changed = changed || kind != model->parameters[i].kind;
-            model->parameters[i].kind = kind;
-        }
-    }
 }
 
 const char *mt_model_title(const mt_model *model)

@@ -8,6 +8,7 @@
 #include "base/diagnostics.h"
 #include "base/document.h"
 #include "base/possible.h"
+#include "base/sorted.h"
 #include "expr/expr.h"
 #include "expr/kind.h"
 #include "expr/units.h"
@@ -51,7 +52,7 @@ typedef struct mt_parameter {
     const char *unit;
     /* unit of its number in the file where that is not an SI unit ("mm"); NULL */
     const mt_unit *written;
-    mt_kind kind; /* of its value; see mt_model_find_kinds */
+    mt_kind kind; /* of its value; from its unit, else from its expression */
     const char *description;
     const char *source;
     mt_origin origin;
@@ -173,7 +174,7 @@ typedef struct mt_link {
     mt_addr addr;
 } mt_link;
 
-/* type, JSON name; what they are stands in joint.c */
+/* type, JSON name; what they are stands in mt_joint_kind */
 #define MT_JOINT_LIST(X)                         \
     X(MT_JOINT_FIXED, "fixed")                   \
     X(MT_JOINT_REVOLUTE, "revolute")             \
@@ -371,7 +372,7 @@ typedef struct mt_place {
     int column;
 } mt_place;
 
-/* A parameter whose value differs from that in the file (model/setting.h). */
+/* A parameter whose value differs from that in the file (model/values.h). */
 typedef struct mt_setting {
     int parameter;
     double value;
@@ -437,9 +438,6 @@ bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);
 const char *mt_spring_type_name(mt_spring_type type);
 
-/* Set the kinds of all parameters: from the unit, or from the expression where none is
- * given. */
-void mt_model_find_kinds(mt_model *model);
 /* mt_kind_lookup of a model. */
 mt_kind mt_model_kind(const void *model, int parameter);
 /* The SI unit of the dimension of this parameter's unit (a length: m); NULL: none. */
@@ -449,5 +447,73 @@ const mt_unit *mt_model_shown(const mt_model *model, mt_dimension dimension);
 /* The unit of a bare number for this parameter, from its own unit or the file's, against which
  * its expressions are checked (mt_kind_complaint). NULL: SI. */
 const mt_unit *mt_model_number_unit(const mt_model *model, int parameter);
+
+/* For who reads and resolves a model: its names. */
+typedef struct mt_named {
+    const char *name; /* not copied */
+    int value;
+} mt_named;
+
+/* Names to values. */
+typedef struct mt_names {
+    mt_named *items; /* [count] */
+    int count;
+    int room;
+    mt_sorted order; /* of the names */
+} mt_names;
+
+/* One table per name space. Bodies and links share one: both may be given as a body. */
+typedef struct mt_model_names {
+    mt_names parameters;
+    mt_names points;
+    mt_names bodies; /* body i: i; link i: -1 - i */
+    mt_names joints;
+    mt_names springs;
+    mt_names loads;
+    mt_names sensors;
+    mt_names modes;
+    mt_names configurations;
+} mt_model_names;
+
+/* Add a name. *taken: it exists already and is unchanged. */
+void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken);
+/* Value of a name of `length` bytes; *found: it exists. */
+int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found);
+
+/* The coordinate of a joint about or along its axis: moved by `drive`, and acted on by loads,
+ * torsion springs, gears and racks. */
+typedef enum mt_coordinate {
+    MT_COORDINATE_NONE,
+    MT_COORDINATE_ANGLE,
+    MT_COORDINATE_DISPLACEMENT
+} mt_coordinate;
+
+/* The part of the vector between two points, one on each body, that the joint makes zero. */
+typedef enum mt_closes {
+    MT_CLOSES_NOTHING,
+    MT_CLOSES_ALL,
+    MT_CLOSES_ACROSS, /* the axis */
+    MT_CLOSES_ALONG,  /* the axis */
+    MT_CLOSES_LENGTH
+} mt_closes;
+
+/* Properties of a type of joint; its equations are in mechanics/build.c. */
+typedef struct mt_joint_kind {
+    bool in[2]; /* exists in two, in three dimensions */
+    mt_coordinate coordinate;
+    mt_closes closes;
+    int least_at; /* number of points */
+    int most_at;
+    bool axis[2]; /* needed in two and in three dimensions */
+    bool axis_b;  /* axis_b needed in three dimensions */
+    /* [dimension - 2][body]: uses the body's orientation, which a point mass does not have */
+    bool turns[2][2];
+    bool couples;        /* couples the coordinates of two joints and has no bodies */
+    const char *article; /* before the name of the type; NULL: "a" */
+} mt_joint_kind;
+
+/* type: not MT_JOINT_TYPE_COUNT. */
+const mt_joint_kind *mt_joint_kind_of(mt_joint_type type);
+const char *mt_joint_article(mt_joint_type type);
 
 #endif

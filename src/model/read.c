@@ -1,23 +1,202 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model file: the root, points and bodies, and how the parts come together. */
+/* A model file: how it is read, how its parts come together, and the stages in which it is
+ * resolved and checked. */
 #include "model/read.h"
-
-#include "model/read_priv.h"
 
 #include "modetune/model.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "expr/kind.h"
 #include "io/file.h"
 #include "io/json.h"
 #include "io/reader.h"
-#include "model/names.h"
-#include "model/resolve.h"
-#include "model/setting.h"
+#include "model/item.h"
+#include "model/lint.h"
+#include "model/model.h"
 #include "model/values.h"
 
-const char *const mt_origin_names[] = {"published", "identified", "assumed"};
+/* The last stage: what the numbers are, in every configuration. Faults are errors, doubts
+ * warnings; what several configurations share is said once. */
+
+static bool is_told(const mt_warning_list *list, int n, const mt_warning *d)
+{
+    for (int i = 0; i < n; i++) {
+        const mt_warning *const other = &list->items[i];
+        if (other->addr == d->addr && strcmp(other->text, d->text) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Report a warning, with the configuration where an override caused it. */
+static void report_warning(mt_resolve *f, const mt_warning *d, const mt_configuration *c)
+{
+    const bool own = c->n_overrides > 0;
+    const char *const in = own ? " in configuration \"" : "";
+    if (d->level == MT_LEVEL_FAULT) {
+        mt_diag_error(f->d, d->addr, "%s%s%s%s", d->text, in, own ? c->name.s : "",
+                      own ? "\"" : "");
+    } else if (d->level == MT_LEVEL_WARNING) {
+        mt_diag_warning(f->d, d->addr, "%s%s%s%s", d->text, in, own ? c->name.s : "",
+                        own ? "\"" : "");
+    }
+}
+
+/* Only where there is no error so far. */
+static void resolve_values(mt_resolve *f)
+{
+    mt_model *const m = f->m;
+    mt_arena texts = {.first = NULL};
+    mt_warning_list list = mt_warning_list_default(&texts);
+    const bool sound = f->d->errors == 0;
+    double *const value = mt_arena_f64(&texts, (size_t)m->n_nums, 1);
+    bool ok = value != NULL;
+    for (int pass = 0; pass < 2 && sound && ok; pass++) {
+        for (int c = 0; c < m->n_configurations && ok; c++) {
+            const bool own = m->configurations[c].n_overrides > 0;
+            const int first = list.n;
+            if (own != (pass == 1)) {
+                continue; /* the file's own values first */
+            }
+            ok = mt_model_numbers(m, c, 0, NULL, NULL, &texts, value, NULL) == MT_OK;
+            if (ok) {
+                mt_model_lint(m, c, value, &list);
+            }
+            for (int i = first; i < list.n && ok; i++) {
+                if (!is_told(&list, i, &list.items[i])) {
+                    report_warning(f, &list.items[i], &m->configurations[c]);
+                }
+            }
+        }
+    }
+    if (!ok || mt_arena_failed(&texts)) {
+        mt_arena_fail(&m->mem);
+    }
+    mt_arena_free(&texts);
+}
+
+/* Resolving and checking a model, stage by stage; and its name spaces. */
+
+/* Enter one name; a second use is noted. */
+static void enter(mt_resolve *f, mt_names *table, mt_name name, int value, const char *what)
+{
+    bool taken = false;
+    if (name.s == NULL) {
+        return;
+    }
+    mt_names_add(table, &f->m->mem, name.s, value, &taken);
+    if (taken) {
+        mt_diag_error(f->d, name.addr, "the name \"%s\" is taken by another %s", name.s, what);
+    }
+}
+
+/* One name space: a list of items with a member `name`. */
+#define ENTER_ALL(f, table, list, what)                                      \
+    for (int i = 0; i < (f)->m->n_##list; i++) {                             \
+        enter((f), &(f)->m->tables->table, (f)->m->list[i].name, i, (what)); \
+    }
+
+static void resolve_names(mt_resolve *f)
+{
+    mt_model *const m = f->m;
+    *m->tables = (mt_model_names){0};
+    for (int i = 0; i < m->n_parameters; i++) {
+        const mt_name name = m->parameters[i].name;
+        if (name.s != NULL && mt_expr_reserved(name.s)) {
+            mt_diag_error(f->d, name.addr, "\"%s\" is a function or constant of expressions",
+                          name.s);
+        }
+    }
+    ENTER_ALL(f, parameters, parameters, "parameter")
+    ENTER_ALL(f, points, points, "point")
+    ENTER_ALL(f, bodies, bodies, "body or link")
+    for (int i = 0; i < m->n_links; i++) {
+        enter(f, &m->tables->bodies, m->links[i].name, -1 - i, "body or link");
+    }
+    ENTER_ALL(f, joints, joints, "joint")
+    ENTER_ALL(f, springs, springs, "spring or damper")
+    ENTER_ALL(f, loads, loads, "load")
+    ENTER_ALL(f, sensors, sensors, "sensor")
+    ENTER_ALL(f, modes, modes, "mode")
+    ENTER_ALL(f, configurations, configurations, "configuration")
+    bool found = false;
+    const int i = mt_names_find(&m->tables->bodies, "ground", strlen("ground"), &found);
+    if (found) {
+        const mt_name name = i >= 0 ? m->bodies[i].name : m->links[-1 - i].name;
+        mt_diag_error(f->d, name.addr, "\"ground\" is the fixed world and cannot be a name");
+    }
+}
+
+static void resolve_bodies(mt_resolve *f)
+{
+    for (int i = 0; i < f->m->n_bodies; i++) {
+        mt_resolve_position(f, &f->m->bodies[i].centre);
+    }
+}
+
+/* A model without configurations has one, "default". */
+static void ensure_configuration(mt_resolve *f)
+{
+    mt_model *const m = f->m;
+    if (m->n_configurations > 0) {
+        return;
+    }
+    m->configurations = mt_arena_alloc(&m->mem, 1, sizeof *m->configurations);
+    if (m->configurations == NULL) {
+        return;
+    }
+    m->n_configurations = 1;
+    m->cap_configurations = 1;
+    m->configurations[0] =
+        (mt_configuration){.name = {.s = "default", .addr = MT_NO_ADDR}, .like = MT_ABSENT};
+    m->configurations[0].like_name.addr = MT_NO_ADDR;
+    for (int k = 0; k < 3; k++) {
+        m->configurations[0].gravity[k] = MT_ABSENT;
+    }
+}
+
+/* Check the cost of all configurations together. Beyond the limit, nothing else is checked. */
+static bool fits(const mt_model *m, mt_diags *diags)
+{
+    const double parts = (double)m->n_nums + m->n_bodies + m->n_links + m->n_joints +
+                         m->n_springs + m->n_loads + m->n_sensors;
+    if (m->n_configurations < 2 || (double)m->n_configurations * parts <= MT_MAX_CONFIGURED) {
+        return true;
+    }
+    mt_diag_error(diags, m->configurations[0].name.addr,
+                  "%d configurations of %.0f numbers and items are too many: at most %d as the "
+                  "product",
+                  m->n_configurations, parts, (int)MT_MAX_CONFIGURED);
+    return false;
+}
+
+mt_status mt_model_resolve(mt_model *model, mt_diags *diags, mt_err *err)
+{
+    static void (*const stages[])(mt_resolve *) = {
+        ensure_configuration, resolve_names,      mt_resolve_configurations,
+        resolve_bodies,       mt_resolve_links,   mt_resolve_joints,
+        mt_resolve_forces,    mt_resolve_sensors, mt_resolve_drives,
+        mt_resolve_cycles,    resolve_values,
+    };
+    mt_resolve f = {.m = model, .d = diags};
+    const int n_stages = fits(model, diags) ? MT_COUNT(stages) : 0;
+    for (int i = 0; i < n_stages && !mt_arena_failed(&model->mem); i++) {
+        stages[i](&f);
+    }
+    MT_TRY(mt_arena_check(&model->mem, err));
+    MT_TRY(mt_arena_check(diags->mem, err));
+    if (diags->errors > 0) {
+        return mt_fail(err, MT_E_INPUT, "%s%s", diags->count > 0 ? diags->items[0].text : "",
+                       diags->errors > 1 ? " (and more)" : "");
+    }
+    return MT_OK;
+}
+
+/* The file: its root, points and bodies. */
 
 /* In two dimensions one moment; in three three moments, or six with the products; none: a point
  * mass. */
@@ -108,6 +287,20 @@ static void read_accepted(mt_reader *r, const mt_key *key, mt_addr value, void *
     ((mt_model *)item)->accepted = mt_reader_accepted(r, value);
 }
 
+/* Points by name, for reading positions. Duplicates are left to mt_model_resolve. */
+static void index_points(mt_model *model)
+{
+    mt_names *const table = &model->tables->points;
+    bool taken = false;
+    *table = (mt_names){0};
+    for (int i = 0; i < model->n_points; i++) {
+        const char *const name = model->points[i].name.s;
+        if (name != NULL) {
+            mt_names_add(table, &model->mem, name, i, &taken);
+        }
+    }
+}
+
 static void read_points(mt_reader *r, const mt_key *key, mt_addr object, void *item)
 {
     mt_model *const m = item;
@@ -119,7 +312,44 @@ static void read_points(mt_reader *r, const mt_key *key, mt_addr object, void *i
         p->name = mt_reader_member_name(r, i.at, MT_NAME_ITEM);
         mt_read_coordinates(mt_model_reader_of(r), i.at, p->x);
     }
-    mt_model_index_points(m);
+    index_points(m);
+}
+
+/* Springs, then dampers, into one list. */
+static void read_springs(mt_reader *r, const mt_key *key, mt_addr list, void *item)
+{
+    mt_model *const m = item;
+    mt_items items = mt_reader_items(r, list);
+    mt_items all = {.count = m->n_springs + items.count};
+    mt_spring *const springs = mt_reader_room(r, &all, sizeof *springs);
+    if (springs == NULL) {
+        return;
+    }
+    if (m->n_springs > 0) {
+        memcpy(springs, m->springs, (size_t)m->n_springs * sizeof *springs);
+    }
+    m->springs = springs;
+    while (mt_items_next(&items)) {
+        (void)mt_members_read(r, items.at, key->of, &springs[m->n_springs++]);
+    }
+}
+
+/* Structs that begin with their name, as members of an object. */
+_Static_assert(offsetof(mt_named_mode, name) == 0 && offsetof(mt_configuration, name) == 0,
+               "structs by name begin with it");
+
+static void read_by_name(mt_reader *r, const mt_key *key, mt_addr object, void *item)
+{
+    int *const n = (int *)(void *)((char *)item + key->other);
+    mt_items items = mt_reader_items(r, object);
+    char *const room = mt_reader_room(r, &items, key->of->size);
+    while (mt_items_next(&items)) {
+        void *const one = room + ((size_t)*n * key->of->size);
+        (void)mt_members_read(r, items.at, key->of, one);
+        *(mt_name *)one = mt_reader_member_name(r, items.at, (mt_name_form)key->least);
+        ++*n;
+    }
+    memcpy((char *)item + key->at, &room, sizeof room);
 }
 
 /* All numbers but those of configurations are read, from which the units of parameters
@@ -127,7 +357,7 @@ static void read_points(mt_reader *r, const mt_key *key, mt_addr object, void *i
 static void read_configurations(mt_reader *r, const mt_key *key, mt_addr object, void *item)
 {
     mt_read_settle_units(mt_model_reader_of(r));
-    mt_item_by_name(r, key, object, item);
+    read_by_name(r, key, object, item);
 }
 
 static const char *const FORMATS[] = {"modetune-model/1"};
@@ -172,16 +402,16 @@ static const mt_key MODEL[] = {
                "Joints between bodies, links and the ground."),
     MT_M_LIST_OF("springs", mt_spring_keys,
                  "Springs; unstressed in the reference position unless they say otherwise.",
-                 .read = mt_read_springs),
-    MT_M_LIST_OF("dampers", mt_damper_keys, "Viscous dampers.", .read = mt_read_springs),
+                 .read = read_springs),
+    MT_M_LIST_OF("dampers", mt_damper_keys, "Viscous dampers.", .read = read_springs),
     MT_M_ITEMS("loads", false, loads, n_loads, mt_load, NULL, mt_load_keys,
                "Dead loads: forces and moments of constant size and direction. Equilibrium is "
                "found under them, and their geometric stiffness counts."),
-    MT_M_STRUCT("damping", mt_damping, damping, mt_damping_keys),
+    MT_M_PART("damping", false, damping, mt_damping, mt_damping_keys, NULL),
     MT_M_ITEMS("sensors", false, sensors, n_sensors, mt_sensor, NULL, mt_sensor_keys,
                "Where shapes are compared: MAC and pairing use the sensors whose names both "
                "sides have."),
-    MT_I_NAMED("modes", mt_item_by_name, modes, mt_named_mode, TITLE, mt_mode_keys,
+    MT_I_NAMED("modes", read_by_name, modes, mt_named_mode, TITLE, mt_mode_keys,
                "Names for vibration modes, which are then tracked by their shape.",
                .schema = MT_I_BY_NAME(MT_I_NAMES_TITLE, MT_I_OF("mode"))),
     MT_I_NAMED("configurations", read_configurations, configurations, mt_configuration, ITEM,

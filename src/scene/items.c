@@ -10,7 +10,7 @@
 #include "analysis/lowest.h"
 #include "linalg/dense.h"
 #include "mechanics/data.h"
-#include "model/joint.h"
+#include "model/model.h"
 #include "model/values.h"
 
 /* Values of a design in one configuration, who is who in its system, and where what is drawn

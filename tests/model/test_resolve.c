@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "model/names.h"
-#include "model/resolve.h"
+#include "model/model.h"
+#include "model/read.h"
 #include "mt_test.h"
 
 static void names__all_are_found_again(mt_test *t)

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters and their units: what the names of units say, and what their uses do. */
-#include "io/read_units.h"
-
-#include "model/read_priv.h"
-
+/* Parameters and their units, what the names of units say and what their uses do; and circles
+ * of parameters. */
 #include <string.h>
 
 #include "base/format.h"
 #include "expr/kind.h"
 #include "expr/units.h"
+#include "io/reader.h"
 #include "io/synonyms.h"
-#include "model/names.h"
+#include "model/item.h"
+#include "model/model.h"
 
 #define UNIT_NAME(name, si, dimension, up, down) name,
 
@@ -163,6 +162,44 @@ static void read_parameter(mt_reader *r, mt_addr value, mt_parameter *p)
     }
 }
 
+static mt_kind kind_of_parameter(const mt_model *m, const mt_parameter *p)
+{
+    const mt_unit *const si = mt_parameter_si(p);
+    if (si != NULL) {
+        return mt_kind_of_dimension(si->dimension);
+    }
+    if (p->unit != NULL) {
+        return strcmp(p->unit, "1") == 0 ? MT_KIND_NUMBER : MT_KIND_UNKNOWN;
+    }
+    if (p->value == MT_ABSENT) {
+        return MT_KIND_UNKNOWN;
+    }
+    /* a 0 that somebody may change is a number */
+    const mt_kind kind = mt_expr_kind(&m->nums[p->value].expr, mt_model_kind, m).kind;
+    return kind == MT_KIND_ZERO ? MT_KIND_NUMBER : kind;
+}
+
+/* Expressions may refer to later and earlier parameters: passes forwards and backwards in turn
+ * while something changes. A chain of parameters without units that needs more passes stays
+ * unknown, which is not reported. */
+static void find_kinds(mt_model *model)
+{
+    enum { MOST_PASSES = 8 };
+    bool changed = true;
+    for (int i = 0; i < model->n_parameters; i++) {
+        model->parameters[i].kind = MT_KIND_UNKNOWN;
+    }
+    for (int pass = 0; changed && pass < MOST_PASSES; pass++) {
+        changed = false;
+        for (int k = 0; k < model->n_parameters; k++) {
+            const int i = pass % 2 == 0 ? k : model->n_parameters - 1 - k;
+            const mt_kind kind = kind_of_parameter(model, &model->parameters[i]);
+            changed = changed || kind != model->parameters[i].kind;
+            model->parameters[i].kind = kind;
+        }
+    }
+}
+
 /* Expressions of lengths, angles and speeds, when all parameters are known: a parameter without
  * a unit is what its expression makes it. */
 static void check_kinds(mt_model_reader *mr)
@@ -177,11 +214,26 @@ static void check_kinds(mt_model_reader *mr)
     }
 }
 
+/* The table of parameters before the others, so that mt_model_lookup is fast while expressions
+ * are read. Duplicates are left to mt_model_resolve. */
+static void index_parameters(mt_model *model)
+{
+    mt_names *const table = &model->tables->parameters;
+    bool taken = false;
+    *table = (mt_names){0};
+    for (int i = 0; i < model->n_parameters; i++) {
+        const char *const name = model->parameters[i].name.s;
+        if (name != NULL) {
+            mt_names_add(table, &model->mem, name, i, &taken);
+        }
+    }
+}
+
 /* Parameters are entered by name first: expressions may look ahead. */
-void mt_read_parameters(mt_reader *r, const mt_key *key, mt_addr object, void *item)
+void mt_read_parameters(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     mt_model *const m = item;
-    mt_items items = mt_reader_items(r, object);
+    mt_items items = mt_reader_items(r, value);
     (void)key;
     const int n = items.count;
     int n_more = 0;
@@ -207,12 +259,12 @@ void mt_read_parameters(mt_reader *r, const mt_key *key, mt_addr object, void *i
     }
     r->names = names;
     r->n_names = n_names;
-    mt_model_index_parameters(m);
-    items = mt_reader_items(r, object);
+    index_parameters(m);
+    items = mt_reader_items(r, value);
     for (int k = 0; !mt_arena_failed(&m->mem) && mt_items_next(&items); k++) {
         read_parameter(r, items.at, &m->parameters[k]);
     }
-    mt_model_find_kinds(m);
+    find_kinds(m);
     r->kinds = mt_model_kind;
     check_kinds(mt_model_reader_of(r));
 }
@@ -541,6 +593,149 @@ void mt_read_warning_units(mt_model_reader *mr)
     for (int k = 0; k < m->n_nums; k++) {
         if (has_unit(&m->nums[k].expr)) {
             warn_unit(mr, &m->nums[k], owner[k], numbered[k]);
+        }
+    }
+}
+
+/*
+ * Parameters that refer to each other in a circle. In a configuration an override stands in
+ * place of the parameter's own expression, so circles are searched in every configuration with
+ * overrides. Depth-first with an explicit stack: a chain of parameters may be as long as the
+ * file allows.
+ */
+
+enum { UNSEEN, ON_PATH, DONE };
+
+typedef struct search {
+    mt_resolve *f;
+    mt_num *value; /* [n_parameters] the expression in force */
+    int *state;    /* [n_parameters] */
+    int *stack;    /* [n_parameters] parameters on the path */
+    int *next; /* [n_parameters] where the reading of the expression at that depth goes on */
+    int depth;
+    const char *configuration; /* NULL: the model as it stands */
+} search;
+
+static void note_cycle(const search *s, int again)
+{
+    const mt_model *const m = s->f->m;
+    int from = s->depth - 1;
+    while (s->stack[from] != again) {
+        from--;
+    }
+    mt_resolve_ring ring = {.first = m->parameters[again].name.s};
+    for (int i = from + 1; i < s->depth; i++) {
+        mt_resolve_ring_add(&ring, m->parameters[s->stack[i]].name.s);
+    }
+    mt_resolve_ring_end(&ring);
+    const mt_addr addr = mt_resolve_addr(m, s->value[again]);
+    if (s->configuration == NULL) {
+        mt_diag_error(s->f->d, addr, "parameters refer to each other in a circle: %s",
+                      ring.text);
+    } else {
+        mt_diag_error(s->f->d, addr,
+                      "in configuration \"%s\" parameters refer to each other in a circle: %s",
+                      s->configuration, ring.text);
+    }
+}
+
+/* Next parameter that the expression on top of the stack refers to; MT_ABSENT at its end. */
+static int next_operand(const search *s)
+{
+    const int top = s->depth - 1;
+    const mt_num num = s->value[s->stack[top]];
+    if (num == MT_ABSENT) {
+        return MT_ABSENT;
+    }
+    const mt_expr *const e = &s->f->m->nums[num].expr;
+    while (s->next[top] < e->length) {
+        const mt_code *const code = &e->code[s->next[top]++];
+        if (code->op == MT_OP_PARAM) {
+            return code->param;
+        }
+    }
+    return MT_ABSENT;
+}
+
+static void push_parameter(search *s, int parameter)
+{
+    s->state[parameter] = ON_PATH;
+    s->stack[s->depth] = parameter;
+    s->next[s->depth] = 0;
+    s->depth++;
+}
+
+/* Search from one parameter; true when a circle was found. */
+static bool circle_from(search *s, int parameter)
+{
+    s->depth = 0;
+    push_parameter(s, parameter);
+    while (s->depth > 0) {
+        const int operand = next_operand(s);
+        if (operand == MT_ABSENT) {
+            s->state[s->stack[--s->depth]] = DONE;
+        } else if (s->state[operand] == ON_PATH) {
+            note_cycle(s, operand);
+            return true;
+        } else if (s->state[operand] == UNSEEN) {
+            push_parameter(s, operand);
+        }
+    }
+    return false;
+}
+
+/* Every circle that is reached; the parameters of one are not entered again. */
+static bool circles(search *s)
+{
+    const int n = s->f->m->n_parameters;
+    bool any = false;
+    for (int i = 0; i < n; i++) {
+        s->state[i] = UNSEEN;
+    }
+    for (int i = 0; i < n; i++) {
+        if (s->state[i] == UNSEEN && circle_from(s, i)) {
+            any = true;
+            for (int k = 0; k < s->depth; k++) {
+                s->state[s->stack[k]] = DONE;
+            }
+        }
+    }
+    return any;
+}
+
+static void values_with_overrides(const mt_model *m, const mt_configuration *c, mt_num *value)
+{
+    for (int i = 0; i < m->n_parameters; i++) {
+        value[i] = m->parameters[i].value;
+    }
+    for (int i = 0; c != NULL && i < c->n_overrides; i++) {
+        if (c->overrides[i].parameter != MT_ABSENT) {
+            value[c->overrides[i].parameter] = c->overrides[i].value;
+        }
+    }
+}
+
+void mt_resolve_cycles(mt_resolve *f)
+{
+    mt_model *const m = f->m;
+    const size_t n = (size_t)m->n_parameters;
+    search s = {.f = f,
+                .value = mt_arena_int(&m->mem, n),
+                .state = mt_arena_int(&m->mem, n),
+                .stack = mt_arena_int(&m->mem, n),
+                .next = mt_arena_int(&m->mem, n)};
+    if (mt_arena_failed(&m->mem)) {
+        return;
+    }
+    values_with_overrides(m, NULL, s.value);
+    if (circles(&s)) {
+        return; /* configurations would repeat it */
+    }
+    for (int c = 0; c < m->n_configurations; c++) {
+        if (m->configurations[c].n_overrides > 0) {
+            s.configuration = m->configurations[c].name.s;
+            values_with_overrides(m, &m->configurations[c], s.value);
+            (void)circles(&s);
         }
     }
 }

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef MODEL_READ_PRIV_H
-#define MODEL_READ_PRIV_H
+#ifndef MODEL_ITEM_H
+#define MODEL_ITEM_H
 
 #include "io/members.h"
 #include "model/model.h"
 
-/* Shared by the files read*.c: the reader and the model that it fills. */
+/*
+ * What the items of a model are made of and have in common: the rows of their tables and how
+ * they are read, and what resolves their names. Each kind of item stands in its item_*.c: its
+ * table, what reads it, and its checks.
+ */
+/* The reader, and the model that it fills. */
 typedef struct mt_model_reader {
     mt_reader r;
     mt_model *m;
@@ -71,11 +76,11 @@ mt_model_reader *mt_model_reader_of(mt_reader *r);
         .name = "at", .type = MT_KEY_TEXT_OR_LIST, MT_M_ROW(POINT), .read = mt_item_at,   \
         .at = offsetof(THIS, at), .other = MT_M_PLACE(int, n_at), .schema = MT_I_OF("at") \
     }
-/* Two names, as mt_attach bodies[2] and as mt_name[2] */
-#define MT_I_TWO(label, function, m, ...)                                                  \
-    {                                                                                      \
-        .name = (label), .type = MT_KEY_LIST, .read = (function), .at = offsetof(THIS, m), \
-        .least = 2, .most = 2, .says = __VA_ARGS__                                         \
+/* Two names: mt_name[2], or structs that begin with it (mt_attach[2]) */
+#define MT_I_TWO(label, m, ...)                                                               \
+    {                                                                                         \
+        .name = (label), .type = MT_KEY_LIST, .read = mt_item_names, .at = offsetof(THIS, m), \
+        .other = sizeof(((THIS *)NULL)->m[0]), .least = 2, .most = 2, .says = __VA_ARGS__     \
     }
 /* mt_presence in */
 #define MT_I_IN                                                                             \
@@ -85,7 +90,7 @@ mt_model_reader *mt_model_reader_of(mt_reader *r);
                 "Configurations that are `like` one of them contain it as well."            \
     }
 /* Structs that begin with their name (mt_name, of the form MT_NAME_...), and their number
- * (int): members of an object, each read by the table; read by mt_item_by_name, at last */
+ * (int): members of an object, each read by the table */
 #define MT_I_NAMED(label, function, m, item_type, form, table, ...)                \
     {                                                                              \
         .name = (label), .type = MT_KEY_OBJECT, MT_M_TO(function, item_type *, m), \
@@ -104,11 +109,8 @@ void mt_item_nums(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_vector(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_position(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_at(mt_reader *r, const mt_key *key, mt_addr value, void *item);
-void mt_item_bodies(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_names(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_presence(mt_reader *r, const mt_key *key, mt_addr value, void *item);
-void mt_item_by_name(mt_reader *r, const mt_key *key, mt_addr value, void *item);
-void mt_read_springs(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_parameters(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 
 extern const mt_key_table mt_model_keys;
@@ -145,5 +147,56 @@ void mt_read_settle_units(mt_model_reader *mr);
 /* Called when all is read: warn of numbers whose units are not those of their members
  * (unit_warning). */
 void mt_read_warning_units(mt_model_reader *mr);
+
+/* While a model is resolved and checked. Problems go to diags,
+ * and a shortage of memory to the model's arena; the functions return no status. */
+typedef struct mt_resolve {
+    mt_model *m;
+    mt_diags *d;
+    int *order; /* [n_configurations], each after the one that it is like */
+} mt_resolve;
+
+/* Index of a name in a table; MT_ABSENT where it is unknown, with the error: unknown `what`
+ * "x"; did you mean "y"? An absent name gives MT_ABSENT without an error. */
+int mt_resolve_find(mt_resolve *f, mt_name name, const mt_names *table, const char *what);
+void mt_resolve_position(mt_resolve *f, mt_position *p);
+/* Resolve an attachment. */
+void mt_resolve_attach(mt_resolve *f, mt_attach *a);
+/* True where both attach to the same part. */
+bool mt_resolve_same_attach(const mt_attach *a, const mt_attach *b);
+/* True where the body is a point mass. */
+bool mt_resolve_is_point_mass(const mt_resolve *f, const mt_attach *a);
+/* True where two positions are written the same way and so are equal for all parameters. */
+bool mt_resolve_same_position(const mt_model *m, const mt_position *a, const mt_position *b);
+/* Check that a part of an item is present in every configuration of the item; `what`
+ * "joint". */
+void mt_resolve_needs(mt_resolve *f, mt_name item, const char *what, const mt_presence *in,
+                      const mt_presence *part, const char *part_what, const char *part_name);
+void mt_resolve_needs_attach(mt_resolve *f, mt_name item, const char *what,
+                             const mt_presence *in, const mt_attach *part);
+/* Text "a -> b -> c -> a" of a cycle, of limited length: a long cycle is cut to its first and
+ * last names. Initialise .first, then add the other names in order. */
+enum { MT_RING_NAME = 48, MT_RING_FIRST = 8, MT_RING_LAST = 4, MT_RING_TEXT = 1024 };
+typedef struct mt_resolve_ring {
+    const char *first;
+    int count;                        /* names added */
+    const char *start[MT_RING_FIRST]; /* the first names added */
+    const char *last[MT_RING_LAST];   /* the last names added: number i at i % MT_RING_LAST */
+    char text[MT_RING_TEXT];
+} mt_resolve_ring;
+void mt_resolve_ring_add(mt_resolve_ring *ring, const char *name);
+/* Write ring->text. */
+void mt_resolve_ring_end(mt_resolve_ring *ring);
+/* The address of a number; MT_NO_ADDR where it is absent. */
+mt_addr mt_resolve_addr(const mt_model *m, mt_num num);
+
+/* The stages, in order. */
+void mt_resolve_configurations(mt_resolve *f);
+void mt_resolve_links(mt_resolve *f);
+void mt_resolve_joints(mt_resolve *f);
+void mt_resolve_forces(mt_resolve *f);
+void mt_resolve_sensors(mt_resolve *f);
+void mt_resolve_drives(mt_resolve *f);
+void mt_resolve_cycles(mt_resolve *f);
 
 #endif

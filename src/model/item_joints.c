@@ -1,8 +1,63 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Joints: each has what its type needs (joint.h). */
-#include "model/resolve_priv.h"
+/* Joints: each has what its type needs (mt_joint_kind). */
+#include "model/item.h"
+#include "model/model.h"
 
-#include "model/joint.h"
+#define NAME_OF(id, name) name,
+static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
+
+/* A joint that could not be read is of no type. */
+static void joint_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_joint *const j = item;
+    (void)which;
+    j->type = mt_object_wrong(r, o) ? MT_JOINT_TYPE_COUNT : j->type;
+}
+
+#define THIS mt_joint
+static const mt_key JOINT[] = {
+    MT_I_NAME("joint"),
+    MT_M_CHOICE(
+        "type", true, type, mt_joint_type, "type", JOINT_NAMES,
+        "Two dimensions: fixed, revolute, prismatic, pin-in-slot, distance, orientation (the "
+        "bodies turn together, translations are free), gear, rack. Three: all but pin-in-slot; "
+        "point-on-plane keeps a point of the second body on a plane of the first."),
+    MT_I_TWO("bodies", bodies,
+             "The two bodies or parts that it connects: its coordinate is how far the second "
+             "stands against the first, about the axis (right-handed; in two dimensions "
+             "counter-clockwise) or along it. Each \"ground\", a body, or a part of a link: "
+             "\"L.start\", \"L.end\", the rigid element \"L.3\", or the node \"L.node3\" (of "
+             "beam elements, or where rigid elements meet; \"L.node0\" is the start).",
+             .examples = "[[\"ground\", \"beam.start\"]]"),
+    MT_I_AT,
+    MT_I_VECTOR("axis", axis, has_axis, AXIS,
+                "Direction: of turning, of sliding, or the normal of a plane; fixed to the "
+                "first body."),
+    MT_I_VECTOR("axis_b", axis_b, has_axis_b, AXIS,
+                "Universal joint: the second axis, fixed to the second body."),
+    MT_I_NUM("length_m", false, length, POSITIVE,
+             "Distance joint: its length [m]. Absent: as drawn."),
+    MT_I_NUM("mass_kg", false, mass, NOT_NEGATIVE,
+             "Distance joint: mass of a uniform thin rod between its points, with a ball joint "
+             "at each end [kg]. Absent: a rod without mass."),
+    MT_I_TWO("joints", gear_joints,
+             "Gear: the two revolute joints that it couples. Rack: a revolute joint (the "
+             "pinion), then a prismatic one, a slot or a line."),
+    MT_I_NUM("ratio", false, ratio, NONZERO,
+             "Gear: angle of the second joint divided by that of the first [1], each of its "
+             "second body against its first, about its own axis; not 0; negative for wheels "
+             "that mesh outside: minus the teeth of the first by those of the second."),
+    MT_I_NUM("ratio_m_per_rad", false, ratio_m_per_rad, NONZERO,
+             "Rack: displacement of the second joint divided by the angle of the first "
+             "[m/rad]: the pitch radius, with a sign; not 0."),
+    MT_I_IN,
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_joint_keys = {MT_I_TABLE("joint", JOINT, mt_joint),
+                                    .finish = joint_finish,
+                                    .says = "A joint between two bodies."};
 
 static void check_point_mass(mt_resolve *f, const mt_joint *j, int side)
 {
