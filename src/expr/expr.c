@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Recursive descent over the grammar of expr.h, one function per rule, to postfix code. Every
- * way to nest (parenthesis, argument, sign, exponent) goes through `deeper`, so the recursion
- * is at most MT_EXPR_MAX_DEPTH * 5 small frames. The first problem ends the parse; its place is
- * counted in characters (code points), from 1.
+ * Names of the language, what is meant by what it does not know, and its texts read: recursive
+ * descent over the grammar of expr.h, one function per rule, to postfix code. Every way to nest
+ * (parenthesis, argument, sign, exponent) goes through `deeper`, so the recursion is at most
+ * MT_EXPR_MAX_DEPTH * 5 small frames. The first problem ends the parse; its place is counted in
+ * characters (code points), from 1.
  */
 #include "expr/expr.h"
 
@@ -16,6 +17,180 @@
 #include "expr/kind.h"
 #include "expr/op.h"
 #include "expr/units.h"
+
+/* One list makes the table of functions, that of constants and the names that are reserved. */
+#define FUNCTION_LIST(X)    \
+    X("sqrt", MT_OP_SQRT)   \
+    X("cbrt", MT_OP_CBRT)   \
+    X("exp", MT_OP_EXP)     \
+    X("ln", MT_OP_LN)       \
+    X("log10", MT_OP_LOG10) \
+    X("sin", MT_OP_SIN)     \
+    X("cos", MT_OP_COS)     \
+    X("tan", MT_OP_TAN)     \
+    X("asin", MT_OP_ASIN)   \
+    X("acos", MT_OP_ACOS)   \
+    X("atan", MT_OP_ATAN)   \
+    X("sinh", MT_OP_SINH)   \
+    X("cosh", MT_OP_COSH)   \
+    X("tanh", MT_OP_TANH)   \
+    X("abs", MT_OP_ABS)     \
+    X("atan2", MT_OP_ATAN2) \
+    X("min", MT_OP_MIN)     \
+    X("max", MT_OP_MAX)     \
+    X("hypot", MT_OP_HYPOT) \
+    X("pow", MT_OP_POW)
+/* The constants that are units are worth what expr/units.h says; pi is its own. */
+#define CONSTANT_LIST(X) \
+    X("pi", NULL)        \
+    X("deg", "deg")      \
+    X("rpm", "rpm")      \
+    X("mm", "mm")        \
+    X("cm", "cm")        \
+    X("inch", "in")      \
+    X("ft", "ft")
+
+#define NAME_ENTRY(name, value)  name,
+#define VALUE_ENTRY(name, value) value,
+
+static const char *const reserved_names[] = {FUNCTION_LIST(NAME_ENTRY)
+                                                 CONSTANT_LIST(NAME_ENTRY)};
+static const mt_op function_ops[] = {FUNCTION_LIST(VALUE_ENTRY)};
+static const char *const constant_units[] = {CONSTANT_LIST(VALUE_ENTRY)};
+
+enum { N_NAMES = MT_COUNT(reserved_names), N_FUNCTIONS = MT_COUNT(function_ops) };
+
+static bool is_reserved_word(const char *name, size_t length, const char *reserved)
+{
+    return strlen(reserved) == length && memcmp(name, reserved, length) == 0;
+}
+
+/* Functions and constants by name (length bytes); false: unknown. A constant has a kind
+ * (expr/kind.h): "mm" is a length. */
+static bool find_function(const char *name, size_t length, mt_op *op)
+{
+    for (int i = 0; i < N_FUNCTIONS; i++) {
+        if (is_reserved_word(name, length, reserved_names[i])) {
+            *op = function_ops[i];
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool find_constant(const char *name, size_t length, double *value, mt_kind *kind)
+{
+    static const double pi = 3.14159265358979323846;
+    for (int i = N_FUNCTIONS; i < N_NAMES; i++) {
+        if (is_reserved_word(name, length, reserved_names[i])) {
+            const char *const of = constant_units[i - N_FUNCTIONS];
+            const mt_unit *const unit = of == NULL ? NULL : mt_unit_find(of);
+            *value = unit == NULL ? pi : mt_unit_factor(unit);
+            *kind = unit == NULL ? MT_KIND_PI : mt_kind_of_dimension(unit->dimension);
+            return true;
+        }
+    }
+    return false;
+}
+
+bool mt_expr_reserved(const char *name)
+{
+    for (int i = 0; i < N_NAMES; i++) {
+        if (strcmp(name, reserved_names[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+const char *const *mt_expr_names(int *n)
+{
+    *n = N_NAMES;
+    return reserved_names;
+}
+
+/* Units that no constant of the language is (expr/units.h has those). */
+typedef struct unit_word {
+    const char *word;
+    const char *factor; /* "": 1 */
+    const char *si;
+} unit_word;
+
+static const unit_word words[] = {{"um", "1e-6", "m"},
+                                  {"km", "1e3", "m"},
+                                  {"m", "", "m"},
+                                  {"g", "1e-3", "kg"},
+                                  {"kg", "", "kg"},
+                                  {"t", "1e3", "kg"},
+                                  {"lb", "0.45359237", "kg"},
+                                  {"N", "", "N"},
+                                  {"kN", "1e3", "N"},
+                                  {"Nm", "", "N m"},
+                                  {"Nmm", "1e-3", "N m"},
+                                  {"Pa", "", "Pa"},
+                                  {"MPa", "1e6", "Pa"},
+                                  {"GPa", "1e9", "Pa"},
+                                  {"Hz", "", "Hz"},
+                                  {"kHz", "1e3", "Hz"},
+                                  {"rad", "", "rad"},
+                                  {"mrad", "1e-3", "rad"},
+                                  {"s", "", "s"},
+                                  {"ms", "1e-3", "s"}};
+
+/* Other words for the constants. */
+static const char *const other_words[][2] = {
+    {"degree", "deg"}, {"degrees", "deg"},   {"\xC2\xB0", "deg"},
+    {"in", "inch"},    {"inches", "inch"},   {"feet", "ft"},
+    {"foot", "ft"},    {"millimetre", "mm"}, {"RPM", "rpm"}};
+
+static bool is_unit_word(const char *word, size_t n_word, const char *s)
+{
+    return strlen(s) == n_word && memcmp(s, word, n_word) == 0;
+}
+
+/* The constant with this name or synonym; NULL: none. */
+static const char *constant_of(const char *word, size_t n_word)
+{
+    int n = 0;
+    const mt_unit *const known = mt_units(&n);
+    for (int i = 0; i < n; i++) {
+        if (known[i].constant != NULL && is_unit_word(word, n_word, known[i].constant)) {
+            return known[i].constant;
+        }
+    }
+    for (int i = 0; i < MT_COUNT(other_words); i++) {
+        if (is_unit_word(word, n_word, other_words[i][0])) {
+            return other_words[i][1];
+        }
+    }
+    return NULL;
+}
+
+/* Suggestion for a number followed by a unit, "15 deg" or "2 mm": "15*deg", "2*1e3 (m)", in
+ * out[size]. n_number, n_word: lengths in bytes. False: the word is not a unit. */
+static bool find_meant(const char *number, size_t n_number, const char *word, size_t n_word,
+                       char *out, size_t size)
+{
+    const char *const constant = constant_of(word, n_word);
+    if (constant != NULL) {
+        (void)mt_snprintf(out, size, "\"%.*s*%s\"", (int)n_number, number, constant);
+        return true;
+    }
+    if (is_unit_word(word, n_word, "%") || is_unit_word(word, n_word, "percent")) {
+        (void)mt_snprintf(out, size, "\"%.*s/100\"", (int)n_number, number);
+        return true;
+    }
+    for (int i = 0; i < MT_COUNT(words); i++) {
+        const unit_word *const w = &words[i];
+        if (is_unit_word(word, n_word, w->word)) {
+            (void)mt_snprintf(out, size, "\"%.*s%s%s\" (expressions are in SI units, here %s)",
+                              (int)n_number, number, w->factor[0] == '\0' ? "" : "*", w->factor,
+                              w->si);
+            return true;
+        }
+    }
+    return false;
+}
 
 typedef struct parser {
     const char *text;
@@ -179,7 +354,7 @@ static mt_status unknown_name(parser *p, size_t from, size_t length, bool functi
 static mt_status parse_call(parser *p, size_t from, size_t length)
 {
     mt_op op = MT_OP_CONST;
-    if (!mt_expr_find_function(p->text + from, length, &op)) {
+    if (!find_function(p->text + from, length, &op)) {
         return unknown_name(p, from, length, true);
     }
     const size_t open = p->at++;
@@ -237,14 +412,14 @@ static mt_status parse_name(parser *p)
     }
     double value = 0.0;
     mt_kind kind = MT_KIND_NUMBER;
-    if (mt_expr_find_constant(name, length, &value, &kind)) {
+    if (find_constant(name, length, &value, &kind)) {
         if (kind == MT_KIND_LENGTH && !is_factor(p, from)) {
             return lone_unit(p, from, length);
         }
         return emit(p, MT_OP_CONST, (int)kind, value);
     }
     mt_op op = MT_OP_CONST;
-    if (mt_expr_find_function(name, length, &op)) {
+    if (find_function(name, length, &op)) {
         return mt_fail(p->err, MT_E_INPUT, "at character %d: function \"%.*s\" without \"(\"",
                        character(p, from), (int)length, name);
     }
@@ -272,9 +447,9 @@ static bool is_known_name(const parser *p, const char *name, size_t length)
     double value = 0.0;
     mt_kind kind = MT_KIND_NUMBER;
     mt_op op = MT_OP_CONST;
-    return length > 0 && (mt_expr_find_constant(name, length, &value, &kind) ||
+    return length > 0 && (find_constant(name, length, &value, &kind) ||
                           (p->lookup != NULL && p->lookup(p->context, name, length) >= 0) ||
-                          (name[length] == '(' && mt_expr_find_function(name, length, &op)));
+                          (name[length] == '(' && find_function(name, length, &op)));
 }
 
 /* A number from `from` with a name right behind it, at p->at: a product, perhaps. */
@@ -433,7 +608,7 @@ static mt_status left_over(parser *p)
     for (size_t i = p->number_end; i < p->at; i++) {
         apart = apart && p->text[i] == ' ';
     }
-    if (apart && mt_unit_meant(number, digits, left, length, meant, sizeof meant)) {
+    if (apart && find_meant(number, digits, left, length, meant, sizeof meant)) {
         return mt_fail(p->err, MT_E_INPUT,
                        "at character %d: \"%.*s\" is not part of a number; did you mean %s?",
                        character(p, p->at), shown_length(length), left, meant);

@@ -54,15 +54,6 @@ bool mt_kind_complaint(const mt_expr *e, const mt_unit *unit, mt_kind_lookup loo
                        const void *context, char *out, size_t size);
 enum { MT_KIND_TEXT = 256 }; /* size for every message */
 
-/* Find a function or constant of the expression language by name (length bytes); false:
- * unknown. A constant has a kind (expr/kind.h): "mm" is a length. */
-bool mt_expr_find_function(const char *name, size_t length, mt_op *op);
-bool mt_expr_find_constant(const char *name, size_t length, double *value, mt_kind *kind);
-/* True where the name is that of a function or a constant. */
-bool mt_expr_reserved(const char *name);
-/* Names of all functions and constants, for suggestions; *n their number. */
-const char *const *mt_expr_names(int *n);
-
 /* Finds the unit of a parameter; false: none given. */
 typedef bool (*mt_measures_lookup)(const void *context, int parameter, mt_unit_worth *out);
 

@@ -239,9 +239,4 @@ bool mt_unit_same_powers(const mt_unit_worth *a, const mt_unit_worth *b, bool ra
 /* True where the factors are equal up to rounding. */
 bool mt_unit_same_factor(double a, double b);
 
-/* Suggestion for a number followed by a unit, "15 deg" or "2 mm": "15*deg", "2*1e3 (m)", in
- * out[size]. n_number, n_word: lengths in bytes. False: the word is not a unit. */
-bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t n_word,
-                   char *out, size_t size);
-
 #endif
