@@ -20,7 +20,7 @@ mt_model_reader *mt_model_reader_of(mt_reader *r)
 }
 
 /* Where the row's value goes. */
-static void *place(const mt_key *key, void *item)
+static void *place_of_value(const mt_key *key, void *item)
 {
     return (char *)item + key->at;
 }
@@ -199,7 +199,7 @@ static bool is_pair(mt_model_reader *mr, mt_addr list, bool *wrong)
 void mt_item_at(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     mt_model_reader *const mr = mt_model_reader_of(r);
-    mt_position *const at = place(key, item);
+    mt_position *const at = place_of_value(key, item);
     int *const n = other(key, item);
     mt_addr ends[2] = {value, MT_NO_ADDR};
     bool wrong = false;
@@ -216,7 +216,7 @@ void mt_item_at(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 
 void mt_item_names(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    char *const first = place(key, item);
+    char *const first = place_of_value(key, item);
     mt_addr ends[2] = {MT_NO_ADDR, MT_NO_ADDR};
     const int count = value == MT_NO_ADDR ? 2 : mt_reader_pair(r, value, &ends[0], &ends[1]);
     if (count != 2) {
@@ -230,36 +230,36 @@ void mt_item_names(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 
 void mt_item_presence(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    mt_presence *const in = place(key, item);
+    mt_presence *const in = place_of_value(key, item);
     *in = (mt_presence){.given = value != MT_NO_ADDR, .names = mt_reader_refs(r, value)};
 }
 
 void mt_item_name(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    *(mt_name *)place(key, item) = mt_reader_name(r, value);
+    *(mt_name *)place_of_value(key, item) = mt_reader_name(r, value);
 }
 
 void mt_item_num(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    *(mt_num *)place(key, item) =
+    *(mt_num *)place_of_value(key, item) =
         mt_read_num(mt_model_reader_of(r), value, key->possible, NULL);
 }
 
 void mt_item_nums(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    *(mt_num **)place(key, item) =
+    *(mt_num **)place_of_value(key, item) =
         mt_read_nums(mt_model_reader_of(r), key, value, other(key, item));
 }
 
 void mt_item_vector(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     *(bool *)other(key, item) =
-        read_vector(mt_model_reader_of(r), value, key->possible, NULL, place(key, item));
+        read_vector(mt_model_reader_of(r), value, key->possible, NULL, place_of_value(key, item));
 }
 
 void mt_item_position(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    *(mt_position *)place(key, item) =
+    *(mt_position *)place_of_value(key, item) =
         read_position(mt_model_reader_of(r), value, key->possible);
 }
 

@@ -5,9 +5,11 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "environment/aircraft.h"
 #include "environment/rotor.h"
 #include "io/file.h"
 #include "study/check.h"
@@ -311,31 +313,27 @@ const mt_key_table mt_study_rotor_keys = {
 
 static void read_bands(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
+    const mt_key edges = {.name = key->name,
+                          .possible = key->possible,
+                          .at = offsetof(mt_band_hz, lower_hz),
+                          .other = offsetof(mt_band_hz, upper_hz)};
     mt_bands_source *const source = &((mt_goal_parts *)item)->avoid.source;
     mt_items items = mt_reader_some_items(r, value, key->what);
     source->intervals = mt_reader_room(r, &items, sizeof *source->intervals);
     while (mt_items_next(&items)) {
-        double edges[2];
-        if (mt_read_study_pair(mt_study_reader_of(r), value, items.at, edges)) {
-            source->intervals[source->n_intervals++] =
-                (mt_band_hz){edges[0], edges[1], items.at};
-        }
+        mt_band_hz *const band = &source->intervals[source->n_intervals++];
+        *band = (mt_band_hz){nan(""), nan(""), items.at};
+        mt_study_pair(r, &edges, items.at, band);
     }
 }
 
-/* Structs of the row's table and their number: one object, or the list of the row behind it,
- * which goes before. A wrong one still counts. */
+/* Structs of the row's table and their number: of a list, or of the single one. A wrong one
+ * still counts. */
 static void read_sources(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     int *const n = (int *)(void *)((char *)item + key->other);
-    const bool list = key->type == MT_KEY_LIST;
-    const mt_addr several =
-        list ? value : mt_json_member(r->doc, ((mt_goal_parts *)item)->goal.addr, key[1].name);
-    if (!list && several != MT_NO_ADDR && mt_json_type_of(r->doc, several) == MT_JSON_ARRAY) {
-        return; /* avoid_finish notes that there are both */
-    }
-    mt_items items =
-        list ? mt_reader_some_items(r, value, key->what) : mt_reader_one_or_items(r, value);
+    mt_items items = key->type == MT_KEY_LIST ? mt_reader_some_items(r, value, key->what)
+                                              : mt_reader_one_or_items(r, value);
     char *const room = mt_reader_room(r, &items, key->of->size);
     while (mt_items_next(&items)) {
         if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
@@ -406,13 +404,12 @@ static void avoid_defaults(void *item, mt_addr addr, int which)
     };
 }
 
-static void avoid_finish(mt_reader *r, const mt_object *o, int which, void *item)
+static void avoid_check(mt_reader *r, mt_object *o)
 {
     static const char *const alone[][2] = {{"rotor", "rotors"}, {"machine", "machines"}};
     static const char *const makes[] = {"bands_hz", "rotor", "rotors", "machine", "machines"};
-    mt_goal_parts *const parts = item;
     bool any = false;
-    mt_goal_finish(r, o, which, item);
+    mt_goal_check(r, o);
     for (int i = 0; i < MT_COUNT(makes); i++) {
         any = any || mt_object_has(r, o, makes[i]);
     }
@@ -423,7 +420,16 @@ static void avoid_finish(mt_reader *r, const mt_object *o, int which, void *item
         if (mt_object_has(r, o, alone[i][0]) && mt_object_has(r, o, alone[i][1])) {
             (void)mt_object_one_of(r, o, alone[i][0], 2);
         }
+        if (mt_object_value(o, alone[i][1]) != MT_NO_ADDR) {
+            mt_object_leave_out(o, alone[i][0], 1);
+        }
     }
+}
+
+static void avoid_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_goal_parts *const parts = item;
+    mt_goal_finish(r, o, which, item);
     parts->goal.avoid = mt_arena_alloc(r->mem, 1, sizeof parts->avoid);
     if (parts->goal.avoid != NULL) {
         *parts->goal.avoid = parts->avoid;
@@ -435,6 +441,7 @@ const mt_key_table mt_goal_avoid_keys = {
     .keys = AVOID,
     .n = MT_COUNT(AVOID),
     .defaults = avoid_defaults,
+    .check = avoid_check,
     .finish = avoid_finish,
     .says = "Forbidden frequency bands: every mode keeps clear of them. Bands that overlap are "
             "merged.",

@@ -150,7 +150,9 @@ typedef struct mt_goal_parts {
 #define MT_GOAL_ONE_OR_SEVERAL \
     "\"not\": {\"required\": [\"configuration\", \"configurations\"]}"
 void mt_goal_read_configurations(mt_reader *r, const mt_key *key, mt_addr value, void *item);
-/* mt_key_table.finish of goals with configurations, by itself or from that of their kind. */
+/* mt_key_table.check of goals with configurations and .finish of all, by themselves or from
+ * those of their kind. */
+void mt_goal_check(mt_reader *r, mt_object *o);
 void mt_goal_finish(mt_reader *r, const mt_object *o, int which, void *item);
 
 #define MT_GOAL_KEYS(id, name, ...) extern const mt_key_table mt_goal_##name##_keys;

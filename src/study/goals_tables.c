@@ -9,10 +9,6 @@
 void mt_goal_read_configurations(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     mt_goal *const goal = &((mt_goal_parts *)item)->goal;
-    if (mt_json_member(r->doc, goal->addr, "configuration") != MT_NO_ADDR &&
-        mt_json_member(r->doc, goal->addr, "configurations") != MT_NO_ADDR) {
-        return; /* mt_goal_finish notes it */
-    }
     if (key->type == MT_KEY_LIST) {
         (void)mt_reader_some_items(r, value, key->what);
         goal->configuration_names = mt_reader_refs(r, value);
@@ -25,14 +21,18 @@ void mt_goal_read_configurations(mt_reader *r, const mt_key *key, mt_addr value,
     }
 }
 
-void mt_goal_finish(mt_reader *r, const mt_object *o, int which, void *item)
+void mt_goal_check(mt_reader *r, mt_object *o)
 {
-    mt_goal *const goal = &((mt_goal_parts *)item)->goal;
-    (void)which;
-    goal->tolerance_given = mt_object_has(r, o, "tolerance_percent");
     if (mt_object_has(r, o, "configuration") && mt_object_has(r, o, "configurations")) {
         (void)mt_object_one_of(r, o, "configuration", 2);
+        mt_object_leave_out(o, "configuration", 2);
     }
+}
+
+void mt_goal_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    (void)which;
+    ((mt_goal_parts *)item)->goal.tolerance_given = mt_object_has(r, o, "tolerance_percent");
 }
 
 #define THIS           mt_goal_parts
@@ -81,6 +81,7 @@ const mt_key_table mt_goal_frequency_keys = {
     .what = "goal_frequency",
     .keys = FREQUENCY,
     .n = MT_COUNT(FREQUENCY),
+    .check = mt_goal_check,
     .finish = frequency_finish,
     .says =
         "A natural frequency: equal to a target or to that of a reference, or within limits.",
@@ -101,6 +102,7 @@ const mt_key_table mt_goal_shape_keys = {
     .what = "goal_shape",
     .keys = SHAPE,
     .n = MT_COUNT(SHAPE),
+    .check = mt_goal_check,
     .finish = mt_goal_finish,
     .says = "A mode shape close to a reference's: a residual of the objective \"misfit\" "
             "(difference of unit vectors at the common sensors).",
@@ -117,6 +119,7 @@ const mt_key_table mt_goal_mac_keys = {
     .what = "goal_mac",
     .keys = MAC,
     .n = MT_COUNT(MAC),
+    .check = mt_goal_check,
     .finish = mt_goal_finish,
     .says = "A modal assurance criterion with a reference's shape.",
     .rules = MT_GOAL_ONE_OR_SEVERAL};
@@ -141,6 +144,7 @@ const mt_key_table mt_goal_damping_keys = {
     .what = "goal_damping",
     .keys = DAMPING,
     .n = MT_COUNT(DAMPING),
+    .check = mt_goal_check,
     .finish = mt_goal_finish,
     .says = "The damping ratio of a complex mode: at a target, or within limits. No proof "
             "covers it.",
@@ -169,8 +173,7 @@ static void limit_finish(mt_reader *r, const mt_object *o, int which, void *item
 {
     static const char *const held_against[] = {"equals", "at_least", "at_most"};
     mt_goal *const goal = &((mt_goal_parts *)item)->goal;
-    (void)which;
-    goal->tolerance_given = mt_object_has(r, o, "tolerance_percent");
+    mt_goal_finish(r, o, which, item);
     for (int i = 0; i < MT_COUNT(held_against); i++) {
         mt_read_study_check_requirement(mt_study_reader_of(r), &goal->expression,
                                         mt_object_value(o, held_against[i]));

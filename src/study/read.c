@@ -99,12 +99,7 @@ static const char *const FORMATS[] = {"modetune-study/1"};
 #define THIS mt_study
 static const mt_key STUDY[] = {
     MT_M_FREE("$schema", "This schema, for the editor."),
-    {.name = "format",
-     .type = MT_KEY_TEXT,
-     .required = true,
-     .choices = FORMATS,
-     .n_choices = MT_COUNT(FORMATS),
-     .says = "Kind and version of this file."},
+    MT_M_FORMAT(FORMATS),
     MT_M_TEXT("name", name, "What the study is called. Absent: the file's name."),
     MT_M_TEXT("description", description, "Free text for people."),
     MT_M_FREE("source", "Where it comes from: a table, a page, a test report."),

@@ -142,25 +142,6 @@ double mt_read_study_number(mt_study_reader *s, mt_addr value)
     return number;
 }
 
-bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2])
-{
-    out[0] = nan("");
-    out[1] = nan("");
-    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
-        return false;
-    }
-    mt_addr ends[2];
-    if (mt_reader_pair(&s->r, value, &ends[0], &ends[1]) != 2) {
-        mt_diag_structure(s->r.diags, value, "must be two numbers: [lower, upper]");
-        return false;
-    }
-    for (int i = 0; i < 2; i++) {
-        out[i] = read_expr_number(s, ends[i]);
-        mt_reader_check_range(&s->r, member, ends[i], out[i]);
-    }
-    return true;
-}
-
 /* A place in the struct. */
 static void *place(void *item, size_t at)
 {
@@ -184,10 +165,18 @@ void mt_study_value(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 
 void mt_study_pair(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    double pair[2];
-    if (mt_read_study_pair(mt_study_reader_of(r), value, value, pair)) {
-        *(double *)place(item, key->at) = pair[0];
-        *(double *)place(item, key->other) = pair[1];
+    double *const out[] = {place(item, key->at), place(item, key->other)};
+    mt_addr ends[MT_COUNT(out)];
+    if (!mt_reader_type(r, value, MT_KEY_LIST)) {
+        return;
+    }
+    if (mt_reader_pair(r, value, &ends[0], &ends[1]) != MT_COUNT(out)) {
+        mt_diag_structure(r->diags, value, "must be two numbers: [lower, upper]");
+        return;
+    }
+    for (int i = 0; i < MT_COUNT(out); i++) {
+        *out[i] = read_expr_number(mt_study_reader_of(r), ends[i]);
+        mt_reader_check_range_of(r, key->name, ends[i], *out[i], key->possible);
     }
 }
 

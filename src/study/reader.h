@@ -2,7 +2,6 @@
 #ifndef STUDY_READER_H
 #define STUDY_READER_H
 
-#include "environment/aircraft.h"
 #include "io/members.h"
 #include "io/options.h"
 #include "model/read.h"
@@ -44,7 +43,7 @@ mt_study_reader *mt_study_reader_of(mt_reader *r);
         MT_M_TO(mt_study_value, double, m), .other = MT_M_PLACE(mt_name, by),      \
         .says = __VA_ARGS__                                                        \
     }
-/* two doubles, lower and upper */
+/* two doubles, lower and upper; NaN where they are no numbers */
 #define MT_S_PAIR(label, must, m, upper, row, ...)                                  \
     {                                                                               \
         .name = (label), .type = MT_KEY_NUMBERS, .required = (must), MT_M_ROW(row), \
@@ -86,9 +85,6 @@ double mt_read_study_value(mt_study_reader *s, mt_addr value, const char *parame
 void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
 const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
-/* A list of two numbers, lower and upper, of a member or an item of it; false (noted) where it
- * is anything else. Wrong numbers are NaN. */
-bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2]);
 /* Record a file that was read, with the digest of its bytes. */
 void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256);
 /* Note a refused file at the address of `path` in the study, unless its own diagnostics report

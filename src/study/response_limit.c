@@ -13,7 +13,6 @@
 
 #include "base/text.h"
 #include "environment/aircraft.h"
-#include "environment/vibration.h"
 #include "io/file.h"
 #include "study/check.h"
 #include "study/reader.h"
@@ -232,27 +231,28 @@ static const mt_key RESPONSE_GOAL[] = {
     MT_S_NUMBER("at_most", false, goal.at_most, POSITIVE,
                 "Greatest value, above 0 [SI: m/s^2 per N]."),
     WEIGHT_OF_TARGET,
-    MT_M_JUST("band_hz", NUMBERS, false, RANGE,
+    MT_S_PAIR("band_hz", false, response_limit.lower_hz, response_limit.upper_hz, RANGE,
               "Lower and upper frequency [Hz], above 0: the largest value between them, which "
               "is found and proven, not sampled."),
-    MT_M_JUST("at_hz", NUMBER, false, POSITIVE, "One frequency [Hz], above 0."),
+    MT_S_NUMBER("at_hz", false, response_limit.lower_hz, POSITIVE,
+                "One frequency [Hz], above 0."),
 };
 
 /* A band, or one frequency. */
+static void response_goal_check(mt_reader *r, mt_object *o)
+{
+    mt_goal_check(r, o);
+    (void)mt_object_one_of(r, o, "band_hz", 2);
+    if (mt_object_value(o, "at_hz") != MT_NO_ADDR) {
+        mt_object_leave_out(o, "band_hz", 1);
+    }
+}
+
 static void response_goal_finish(mt_reader *r, const mt_object *o, int which, void *item)
 {
     mt_response_limit *const limit = &((mt_goal_parts *)item)->response_limit;
-    mt_study_reader *const s = mt_study_reader_of(r);
-    const mt_addr band = mt_object_value(o, "band_hz");
-    const mt_addr at = mt_object_value(o, "at_hz");
-    double edges[2];
-    (void)mt_object_one_of(r, o, "band_hz", 2);
-    if (at != MT_NO_ADDR) {
-        limit->lower_hz = mt_read_study_number(s, at);
+    if (mt_object_value(o, "at_hz") != MT_NO_ADDR) {
         limit->upper_hz = limit->lower_hz;
-    } else if (band != MT_NO_ADDR && mt_read_study_pair(s, band, band, edges)) {
-        limit->lower_hz = edges[0];
-        limit->upper_hz = edges[1];
     }
     ports_finish(r, o, which, item);
 }
@@ -262,6 +262,7 @@ const mt_key_table mt_goal_response_keys = {
     .keys = RESPONSE_GOAL,
     .n = MT_COUNT(RESPONSE_GOAL),
     .defaults = ports_defaults,
+    .check = response_goal_check,
     .finish = response_goal_finish,
     .says = "A limit on a frequency response: the amplitude of an output for an input of 1, at "
             "one frequency or the largest over a band.",
@@ -329,17 +330,12 @@ const mt_key_table mt_goal_vibration_keys = {
     .keys = VIBRATION,
     .n = MT_COUNT(VIBRATION),
     .defaults = vibration_defaults,
+    .check = mt_goal_check,
     .finish = vibration_finish,
     .says = "A limit on the vibration of an output under a vibration profile.",
     .rules = MT_GOAL_ONE_OR_SEVERAL};
 
 /* "frequency_response" */
-
-static void read_coherence(mt_reader *r, const mt_key *key, mt_addr value, void *item)
-{
-    (void)key;
-    ((mt_goal_parts *)item)->response_limit.coherence = mt_reader_flag(r, value, false);
-}
 
 static const mt_key FREQUENCY_RESPONSE[] = {
     MT_GOAL_ROWS(MT_GOAL_TOLERANCE),
@@ -352,12 +348,10 @@ static const mt_key FREQUENCY_RESPONSE[] = {
              "Name of one of the study's measurements."),
     MT_S_PAIR("band_hz", false, response_limit.lower_hz, response_limit.upper_hz, BAND,
               "The range of measured frequencies that is used [Hz]. Absent: all of them."),
-    {.name = "coherence",
-     .type = MT_KEY_BOOL,
-     .read = read_coherence,
-     .says = "Let lines weigh by their coherence g2, as g2/(1 - g2), 1 - g2 being 0.01 at "
-             "least.",
-     .otherwise = "false"},
+    MT_M_FLAG("coherence", false, response_limit.coherence,
+              "Let lines weigh by their coherence g2, as g2/(1 - g2), 1 - g2 being 0.01 at "
+              "least.",
+              .otherwise = "false"),
     MT_S_NUMBER("weight", true, goal.weight, POSITIVE,
                 "Weight of the residuals (no unit), above 0."),
 };
@@ -367,6 +361,7 @@ const mt_key_table mt_goal_frequency_response_keys = {
     .keys = FREQUENCY_RESPONSE,
     .n = MT_COUNT(FREQUENCY_RESPONSE),
     .defaults = ports_defaults,
+    .check = mt_goal_check,
     .finish = ports_finish,
     .says = "A frequency response close to a measured one: residuals of the objective "
             "\"misfit\", ln(response/measured) at each of the measured frequencies, each with "
