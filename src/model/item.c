@@ -253,8 +253,8 @@ void mt_item_nums(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 
 void mt_item_vector(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    *(bool *)other(key, item) =
-        read_vector(mt_model_reader_of(r), value, key->possible, NULL, place_of_value(key, item));
+    *(bool *)other(key, item) = read_vector(mt_model_reader_of(r), value, key->possible, NULL,
+                                            place_of_value(key, item));
 }
 
 void mt_item_position(mt_reader *r, const mt_key *key, mt_addr value, void *item)

@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-#include "simulate/step.h"
 #include "simulate/motions.h"
+#include "simulate/step.h"
 
 /* A start with something moving in every direction: a pseudo-random velocity, projected. */
 static bool shove(mt_test *t, motion *m, double size)
