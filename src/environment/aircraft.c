@@ -126,7 +126,8 @@ static const mt_key_table ROTOR_TABLE = {.what = "rotor",
 /* Every name once. */
 static void read_name(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    const mt_aircraft_list *const list = ((aircraft_reader *)(void *)r)->list;
+    const aircraft_reader *const reader = (const void *)r;
+    const mt_aircraft_list *const list = reader->list;
     mt_aircraft *const a = item;
     (void)key;
     a->name = mt_reader_ref(r, value);
