@@ -288,6 +288,20 @@ static mt_status follow_adjoint(parts *s, int p, const double complex *su, mt_ba
     return mt_complex_solve(&s->factor, s->f->n_out, solved, err);
 }
 
+/* Makes rest[power] a writable copy in mem (zeros where it was NULL) and returns it; NULL: out
+ * of memory. */
+static double complex *writable_rest(mt_transfer *t, int power, mt_arena *mem)
+{
+    const size_t size = (size_t)t->n_in * (size_t)t->n_out;
+    double complex *const out = mt_arena_alloc(mem, size, sizeof *out);
+    const double complex *const had = t->rest[power - MT_REST_LOWEST];
+    if (had != NULL && out != NULL) {
+        memcpy(out, had, size * sizeof *out);
+    }
+    t->rest[power - MT_REST_LOWEST] = out;
+    return out;
+}
+
 /* beta, sigma and rest of the transfer. */
 static mt_status channels(parts *s, mt_basis *b, mt_err *err)
 {
@@ -326,7 +340,7 @@ static mt_status channels(parts *s, mt_basis *b, mt_err *err)
             continue;
         }
         double complex *const rest =
-            mt_transfer_rest(t, (at % MT_FORCED_POWERS) + (at / MT_FORCED_POWERS), s->mem);
+            writable_rest(t, (at % MT_FORCED_POWERS) + (at / MT_FORCED_POWERS), s->mem);
         MT_TRY(mt_arena_check(s->mem, err));
         for (ptrdiff_t i = 0; i < f->n_in; i++) {
             for (ptrdiff_t o = 0; o < f->n_out; o++) {

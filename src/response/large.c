@@ -1056,17 +1056,3 @@ mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_ar
     mt_arena_free(&scratch);
     return rc;
 }
-
-mt_status mt_large_left(const mt_large *large, mt_basis *basis, mt_arena *mem, mt_err *err)
-{
-    const int n = large->f.n;
-    mt_left_out *const left = mt_arena_alloc(mem, 1, sizeof *left);
-    double *const row = mt_arena_f64(mem, (size_t)n, (size_t)large->left->n_side);
-    MT_TRY(mt_arena_check(mem, err));
-    *left = *large->left;
-    mt_gemm(true, false, n, left->n_side, n, 1.0, basis->x, n, large->left->row, n, 0.0, row,
-            n);
-    left->row = row;
-    basis->t.left = left;
-    return MT_OK;
-}

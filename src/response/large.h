@@ -22,8 +22,5 @@ typedef struct mt_large {
  * mt_response_open_large. Results in mem. */
 mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_arena *mem,
                         mt_large *out, bool *is, char why[MT_LARGE_WHY], mt_err *err);
-/* Makes the transfer of a basis of large->f (with all modes) bound the error of what is left
- * out. */
-mt_status mt_large_left(const mt_large *large, mt_basis *basis, mt_arena *mem, mt_err *err);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
+#include "linalg/dense.h"
 #include "modal/damped.h"
 #include "response/large.h"
 #include "response/slopes_weighted.h"
@@ -70,6 +71,23 @@ mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, m
     return finish_response(out, &problem, request->direct, err);
 }
 
+/* Makes the transfer of a basis of large->f (with all modes) bound the error of what is left
+ * out. */
+static mt_status bound_left_out(const mt_large *large, mt_basis *basis, mt_arena *mem,
+                                mt_err *err)
+{
+    const int n = large->f.n;
+    mt_left_out *const left = mt_arena_alloc(mem, 1, sizeof *left);
+    double *const row = mt_arena_f64(mem, (size_t)n, (size_t)large->left->n_side);
+    MT_TRY(mt_arena_check(mem, err));
+    *left = *large->left;
+    mt_gemm(true, false, n, left->n_side, n, 1.0, basis->x, n, large->left->row, n, 0.0, row,
+            n);
+    left->row = row;
+    basis->t.left = left;
+    return MT_OK;
+}
+
 mt_status mt_response_open_large(mt_lowest *l, const mt_response_request *request, double to,
                                  mt_response *out, bool *is, char why[MT_LARGE_WHY],
                                  mt_err *err)
@@ -87,7 +105,7 @@ mt_status mt_response_open_large(mt_lowest *l, const mt_response_request *reques
     const mt_mass_factor mass = {.n = large.f.n, .rank = large.f.n};
     const mt_basis_problem problem = {.f = &out->f, .mass = &mass, .modes = &large.modes};
     MT_TRY(finish_response(out, &problem, false, err));
-    return mt_large_left(&large, &out->basis, &out->mem, err);
+    return bound_left_out(&large, &out->basis, &out->mem, err);
 }
 
 mt_status mt_response_admit(const mt_response *r, mt_err *err)

@@ -505,18 +505,6 @@ mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
     return MT_OK;
 }
 
-double complex *mt_transfer_rest(mt_transfer *t, int power, mt_arena *mem)
-{
-    const size_t size = (size_t)t->n_in * (size_t)t->n_out;
-    double complex *const out = mt_arena_alloc(mem, size, sizeof *out);
-    const double complex *const had = t->rest[power - MT_REST_LOWEST];
-    if (had != NULL && out != NULL) {
-        memcpy(out, had, size * sizeof *out);
-    }
-    t->rest[power - MT_REST_LOWEST] = out;
-    return out;
-}
-
 /* Real numbers (and imaginary parts, or NULL), as complex ones; NULL where there are none. */
 static const double complex *complex_of_parts(size_t n, const double *re, const double *im,
                                               mt_arena *mem)

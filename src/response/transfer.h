@@ -101,8 +101,4 @@ mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
                             double complex *a, double complex *h, bool *singular,
                             mt_arena *scratch, mt_err *err);
 
-/* Makes rest[power] a writable copy in mem (zeros where it was NULL) and returns it; NULL: out
- * of memory. */
-double complex *mt_transfer_rest(mt_transfer *t, int power, mt_arena *mem);
-
 #endif
