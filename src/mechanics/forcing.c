@@ -255,6 +255,36 @@ double mt_linear_joint_slope(const mt_linear *lin, int p, int joint, int axis,
     return sum;
 }
 
+/* out (nq x nq) := derivative of the contribution of one joint's equations to Kg; 0 without
+ * loads. */
+static mt_status tangent_of_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    const size_t size = (size_t)sys->nq * (size_t)sys->nq;
+    const mt_linear_tangent *const t = lin->tangent == NULL ? NULL : &lin->tangent[p];
+    memset(out, 0, size * sizeof *out);
+    if (t == NULL || t->lambda == NULL) {
+        return MT_OK;
+    }
+    mt_lagrangian l;
+    mt_placement at = lin->position.at;
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    MT_TRY(mt_lagrangian_init(&l, sys, true, &lin->scratch, err));
+    mt_cx *const own = mt_arena_alloc(&lin->scratch, (size_t)sys->n_constraints, sizeof *own);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    for (int i = 0; i < sys->n_constraints; i++) {
+        own[i] = sys->constraints[i].joint == joint ? t->lambda[i] : 0.0;
+    }
+    at.pose = t->pose;
+    l.slope = true;
+    lin->dual.input = p;
+    mt_data_vecs(&lin->dual);
+    mt_lagrangian_curve(&lin->dual, &at, sys->n_constraints, own, &l);
+    memcpy(out, l.h, size * sizeof *out);
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
+
 mt_status mt_linear_joint_geometric_slope(mt_linear *lin, int p, int joint, int axis,
                                           double *out, mt_err *err)
 {
@@ -269,7 +299,7 @@ mt_status mt_linear_joint_geometric_slope(mt_linear *lin, int p, int joint, int 
     double *const h = mt_arena_f64(&lin->scratch, (size_t)nq, (size_t)nq);
     MT_TRY(mt_arena_check(&lin->scratch, err));
     MT_TRY(mt_tangent_complete(lin, err));
-    MT_TRY(mt_tangent_joint(lin, p, joint, h, err));
+    MT_TRY(tangent_of_joint(lin, p, joint, h, err));
     for (ptrdiff_t c = 0; c < nq; c++) {
         out[c] = sign * h[dof + (c * nq)];
     }

@@ -15,6 +15,7 @@
 #include "mechanics/couplings.h"
 #include "mechanics/eliminate.h"
 #include "mechanics/free_spin.h"
+#include "mechanics/geometry.h"
 #include "mechanics/singular.h"
 #include "mechanics/tangent.h"
 
@@ -87,8 +88,9 @@ static uint64_t bits_of(double x)
     return bits;
 }
 
-bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
-                    const double *inputs)
+/* True where the inputs of the set have the same bits. */
+static bool stages_same(const mt_stages *s, const uint64_t *set, const double *at,
+                        const double *inputs)
 {
     for (int i = 0; i < s->n_inputs; i++) {
         if (mt_stages_has(set, i) && bits_of(at[i]) != bits_of(inputs[i])) {
@@ -100,7 +102,7 @@ bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
 
 bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set, const double *inputs)
 {
-    if (s->valid[stage] && mt_stages_same(s, set, s->at[stage], inputs)) {
+    if (s->valid[stage] && stages_same(s, set, s->at[stage], inputs)) {
         s->counts.skipped[stage]++;
         return false;
     }
@@ -292,6 +294,191 @@ static mt_status reduce_all_rows(mt_linear *lin, mt_err *err)
     return MT_OK;
 }
 
+/* Geometries that configurations of one shape share. */
+
+/* Room for one more system and n more geometries. */
+static bool grow_geometry_pool(mt_geometries *pool, int n)
+{
+    mt_linear **const systems =
+        realloc((void *)pool->systems, ((size_t)pool->n + 1) * sizeof(mt_linear *));
+    if (systems != NULL) {
+        pool->systems = systems;
+    }
+    mt_geometry **const all =
+        realloc((void *)pool->all, ((size_t)pool->n_all + (size_t)n) * sizeof(mt_geometry *));
+    if (all != NULL) {
+        pool->all = all;
+    }
+    return systems != NULL && all != NULL;
+}
+
+static void enter(mt_geometries *pool, mt_linear *lin)
+{
+    pool->systems[pool->n++] = lin;
+    lin->pool = pool;
+}
+
+static void dissolve(mt_geometries *pool)
+{
+    for (int i = 0; i < pool->n_all; i++) {
+        mt_arena_free(&pool->all[i]->mem);
+        free(pool->all[i]);
+    }
+    free((void *)pool->all);
+    free((void *)pool->systems);
+    free(pool);
+}
+
+/* Create one for a system that shares with none. Fails: MT_E_MEMORY. */
+static mt_status open_geometry(mt_linear *lin, mt_err *err)
+{
+    const size_t n = (size_t)lin->sys->n_inputs;
+    mt_geometries *const pool = calloc(1, sizeof *pool);
+    mt_geometry *const g = calloc(1, sizeof *g + (n * sizeof g->at[0]));
+    if (pool == NULL || g == NULL || !grow_geometry_pool(pool, 1) ||
+        mt_arena_init(&g->mem, 0, err) != MT_OK) {
+        if (pool != NULL) {
+            dissolve(pool);
+        }
+        free(g);
+        return mt_fail_memory(err);
+    }
+    g->users = 1;
+    pool->all[pool->n_all++] = g;
+    lin->geometry = g;
+    enter(pool, lin);
+    return MT_OK;
+}
+
+/* Invalidate geometries made by a system that is deleted: their closure's factors point into
+ * it. */
+static void forget_maker(const mt_geometries *pool, const mt_linear *maker)
+{
+    for (int i = 0; i < pool->n; i++) {
+        mt_linear *const other = pool->systems[i];
+        if (other->geometry->maker == maker) {
+            other->stages.valid[MT_STAGE_GEOMETRY] = false;
+        }
+    }
+    for (int i = 0; i < pool->n_all; i++) {
+        if (pool->all[i]->maker == maker) {
+            pool->all[i]->made = false;
+        }
+    }
+}
+
+/* Remove the system; the geometry it made is no longer used. */
+static void leave_geometry(mt_linear *lin)
+{
+    mt_geometries *const pool = lin->pool;
+    if (pool == NULL) {
+        return;
+    }
+    forget_maker(pool, lin);
+    lin->geometry->users--;
+    for (int i = 0; i < pool->n; i++) {
+        if (pool->systems[i] == lin) {
+            pool->systems[i] = pool->systems[--pool->n];
+            break;
+        }
+    }
+    if (pool->n == 0) {
+        dissolve(pool);
+    }
+    lin->pool = NULL;
+}
+
+static void stand_on(mt_linear *lin, mt_geometry *g)
+{
+    lin->geometry->users--;
+    g->users++;
+    lin->geometry = g;
+}
+
+/* Use an empty geometry that no other system uses. */
+static void renew_geometry(mt_linear *lin)
+{
+    const mt_geometries *const pool = lin->pool;
+    for (int i = 0; i < pool->n_all && lin->geometry->users > 1; i++) {
+        if (pool->all[i]->users == 0) {
+            stand_on(lin, pool->all[i]);
+        }
+    }
+    mt_geometry *const g = lin->geometry;
+    assert(g->users == 1);
+    g->made = false;
+    g->sloped = false;
+    mt_arena_clear(&g->mem);
+}
+
+/* Mark it as valid for these inputs. */
+static void mark_geometry_made(mt_linear *lin, const double *inputs)
+{
+    mt_geometry *const g = lin->geometry;
+    g->before_tangent = mt_arena_get_mark(&g->mem);
+    g->maker = lin;
+    g->position = lin->position;
+    g->e = lin->e;
+    g->a = lin->a;
+    for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
+        g->rows[kind] = lin->rows[kind];
+        g->full[kind] = lin->full[kind];
+    }
+    for (int i = 0; i < lin->sys->n_inputs; i++) {
+        g->at[i] = inputs[i];
+    }
+    g->made = true;
+}
+
+static void adopt(mt_linear *lin)
+{
+    const mt_geometry *const g = lin->geometry;
+    lin->position = g->position;
+    lin->position.sys = lin->sys;
+    lin->e = g->e;
+    lin->a = g->a;
+    for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
+        lin->rows[kind] = g->rows[kind];
+        lin->full[kind] = g->full[kind];
+    }
+    mt_data_vecs(&lin->data);
+    mt_data_targets(&lin->data);
+    mt_data_rest(&lin->data, lin->position.reference.pose);
+}
+
+/* Use a geometry that another system made with the same bits of the inputs of `moves`. False:
+ * none. */
+static bool take_geometry(mt_linear *lin, const uint64_t *moves, const double *inputs)
+{
+    const mt_geometries *const pool = lin->pool;
+    for (int i = 0; i < pool->n_all && pool->n > 1; i++) {
+        mt_geometry *const g = pool->all[i];
+        if (g->made && stages_same(&lin->stages, moves, g->at, inputs)) {
+            stand_on(lin, g);
+            adopt(lin);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* lin, which shares with none yet, shares with `with` from now on. Fails: MT_E_MEMORY. */
+static mt_status join_geometries(mt_linear *lin, mt_linear *with, mt_err *err)
+{
+    mt_geometries *const own = lin->pool;
+    assert(own->n == 1);
+    if (!grow_geometry_pool(with->pool, own->n_all)) {
+        return mt_fail_memory(err);
+    }
+    for (int i = 0; i < own->n_all; i++) {
+        with->pool->all[with->pool->n_all++] = own->all[i];
+    }
+    own->n_all = 0;
+    enter(with->pool, lin);
+    dissolve(own);
+    return MT_OK;
+}
+
 /* Linearisation. */
 
 void mt_linear_delete(mt_linear *lin)
@@ -299,7 +486,7 @@ void mt_linear_delete(mt_linear *lin)
     if (lin != NULL) {
         mt_arena_free(&lin->scratch);
         mt_arena_free(&lin->reduced_mem);
-        mt_geometry_leave(lin);
+        leave_geometry(lin);
         mt_arena_free(&lin->base);
         mt_profile_add(lin->stages.profile, &lin->stages.counts);
         free(lin);
@@ -311,7 +498,7 @@ static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
     const size_t count = (size_t)sys->program.count;
     lin->sys = sys;
     MT_TRY(mt_arena_init(&lin->base, 0, err));
-    MT_TRY(mt_geometry_open(lin, err));
+    MT_TRY(open_geometry(lin, err));
     MT_TRY(mt_arena_init(&lin->reduced_mem, 0, err));
     MT_TRY(mt_arena_init(&lin->scratch, 0, err));
     lin->value = mt_arena_f64(&lin->base, count, 1);
@@ -629,9 +816,9 @@ static void assemble_stiffness(mt_linear *lin)
 static mt_status find_position(mt_linear *lin, const double *inputs, mt_err *err)
 {
     const bool again = !lin->follow && lin->has_home &&
-                       mt_stages_same(&lin->stages, lin->sys->places, lin->home_at, inputs);
+                       stages_same(&lin->stages, lin->sys->places, lin->home_at, inputs);
     const mt_placement *const last = lin->follow && lin->has_last ? &lin->last : NULL;
-    mt_geometry_renew(lin);
+    renew_geometry(lin);
     mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
     return mt_position_solve(lin->sys, &lin->data, again ? &lin->home : last,
@@ -745,12 +932,12 @@ static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
     lin->tangent = NULL;
     st->valid[MT_STAGE_TANGENT] = false;
     st->valid[MT_STAGE_REDUCTION] = false;
-    if (mt_geometry_take(lin, moves, inputs)) {
+    if (take_geometry(lin, moves, inputs)) {
         stages_shared(st, MT_STAGE_GEOMETRY, inputs);
         return MT_OK;
     }
     MT_TRY(find_position_and_rows(lin, inputs, err));
-    mt_geometry_made(lin, inputs);
+    mark_geometry_made(lin, inputs);
     mt_stages_done(st, MT_STAGE_GEOMETRY, inputs);
     return MT_OK;
 }
@@ -938,7 +1125,7 @@ mt_status mt_linear_share(mt_linear *lin, mt_linear *with, bool *shared, mt_err 
         return MT_OK;
     }
     MT_TRY(can_share(lin->sys, with->sys, shared, err));
-    const mt_status rc = *shared ? mt_geometry_join(lin, with, err) : MT_OK;
+    const mt_status rc = *shared ? join_geometries(lin, with, err) : MT_OK;
     *shared = *shared && rc == MT_OK;
     return rc;
 }

@@ -31,9 +31,6 @@ typedef struct mt_stages {
 bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set,
                      const double *inputs);
 void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs);
-/* True where the inputs of the set have the same bits. */
-bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
-                    const double *inputs);
 bool mt_stages_has(const uint64_t *set, int input);
 
 /*

@@ -3,8 +3,38 @@
 #define MECHANICS_LINEAR_PRIV_H
 
 #include "mechanics/couplings.h"
-#include "mechanics/geometry.h"
 #include "mechanics/linear.h"
+
+typedef struct mt_linear_tangent mt_linear_tangent;
+
+/*
+ * Results of the stages geometry and tangent at one design. Configurations of one shape
+ * (mt_system_same_shape) at the same design compute them once: linearised systems that share
+ * use one object, and a system that moves to another design leaves it to the others. There are
+ * as many objects as systems, so a free one always exists.
+ */
+typedef struct mt_geometry {
+    mt_arena mem;
+    int users;              /* systems that use it */
+    const mt_linear *maker; /* whose factors may point into its system */
+    bool made;              /* valid for the inputs `at` */
+    bool sloped;            /* derivatives are valid as well */
+    mt_state position;
+    mt_elimination e; /* without z, which belongs to the reduction */
+    double *a;
+    double *rows[MT_TERM_KINDS];
+    mt_rows full[MT_TERM_KINDS];
+    mt_arena_mark before_tangent;
+    mt_linear_tangent *tangent;
+    double at[]; /* [n_inputs] */
+} mt_geometry;
+
+typedef struct mt_geometries {
+    int n;
+    mt_linear **systems;
+    int n_all; /* geometries, at least n */
+    mt_geometry **all;
+} mt_geometries;
 
 /* Data of a linearised system, shared by the files of this room. */
 typedef struct mt_section_slopes mt_section_slopes; /* equilibrium_slopes.c */

@@ -54,6 +54,31 @@ static const double FORCE_ULPS = 4.0;
 /* A step downhill that is longer than it may be by no more than this is shortened as a whole.
  * */
 static const double LITTLE_LONGER = 2.0;
+/* A multiplication of the sparse factors, in a loop over a short row, against one in a matrix
+ * product. */
+static const double SPARSE_SLOWER = 4.0;
+
+/* True where the sparse factors (saddle.h) are cheaper than the dense method (eliminate.h). */
+static bool saddle_pays(const mt_system *sys)
+{
+    const double nq = sys->nq;
+    const double m = fmin(sys->n_constraints, sys->nq);
+    const double n = nq - m;
+    /* pivoted QR, basis, reduced Hessian, its singular values */
+    const double dense =
+        (2.0 * m * m * nq) + (4.0 * nq * n * m) + (2.0 * nq * nq * n) + (30.0 * n * n * n);
+    return SPARSE_SLOWER * 2.0 * sys->layout->work <= dense;
+}
+
+/* *below: the norm of the inverse, in scaled units, is safely below `most`. */
+static mt_status saddle_below(const mt_saddle *s, double most, mt_arena *scratch, bool *below,
+                              mt_err *err)
+{
+    double norm = 0.0;
+    MT_TRY(mt_ldl_inverse_norm(&s->f, scratch, &norm, err));
+    *below = norm <= most;
+    return MT_OK;
+}
 
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err)
@@ -65,7 +90,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     w->g = mt_arena_f64(mem, nq, 1);
     w->c = mt_arena_f64(mem, m, 1);
     w->trim = mt_arena_f64(mem, nq, 1);
-    if (mt_saddle_pays(sys)) {
+    if (saddle_pays(sys)) {
         w->sparse = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim};
         mt_lagrangian_want_rows(&w->sparse, sys, mem);
         w->least = mt_arena_f64(mem, sys->layout->envelope.count, 1);
@@ -412,7 +437,7 @@ mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
     MT_TRY(mt_saddle_factor(w->sys, rows(w), &w->sparse, MT_SADDLE_LEAST_SQUARES, w->least, mem,
                             least, err));
     *sure = least->whole;
-    return *sure && apart ? mt_saddle_below(least, FAR_FROM_DEPENDENT, mem, sure, err) : MT_OK;
+    return *sure && apart ? saddle_below(least, FAR_FROM_DEPENDENT, mem, sure, err) : MT_OK;
 }
 
 /* w->step, w->turn and how much *more the trimmed spring pushes, of w->reduced and w->turn;
@@ -512,7 +537,7 @@ static mt_status newton_linearise_sparse(mt_newton_work *w, const mt_placement *
 
 mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *firm, mt_err *err)
 {
-    return mt_saddle_below(saddle, FIRM, scratch, firm, err);
+    return saddle_below(saddle, FIRM, scratch, firm, err);
 }
 
 /*

@@ -25,19 +25,6 @@ static const double NO_PIVOT[] = {
     [MT_SADDLE_LEAST_SQUARES] = 1e-12, [MT_SADDLE_REGULAR] = 1e-9, [MT_SADDLE_SOFT] = 1e-15};
 /* Open rows beside those that the order makes, for pivots that are put off. */
 enum { ROOM = 24 };
-/* A multiplication here, in a loop over a short row, against one in a matrix product. */
-static const double SLOWER = 4.0;
-
-bool mt_saddle_pays(const mt_system *sys)
-{
-    const double nq = sys->nq;
-    const double m = fmin(sys->n_constraints, sys->nq);
-    const double n = nq - m;
-    /* pivoted QR, basis, reduced Hessian, its singular values */
-    const double dense =
-        (2.0 * m * m * nq) + (4.0 * nq * n * m) + (2.0 * nq * nq * n) + (30.0 * n * n * n);
-    return SLOWER * 2.0 * sys->layout->work <= dense;
-}
 
 /* A state's scale by its own stiffness, where it has some: then a beam's turns weigh as its
  * displacements do, however short its elements are, and nothing need wait for a partner. */
@@ -152,15 +139,6 @@ mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, 
 bool mt_saddle_convex(const mt_saddle *s)
 {
     return s->f.negative == s->sys->n_constraints;
-}
-
-mt_status mt_saddle_below(const mt_saddle *s, double most, mt_arena *scratch, bool *below,
-                          mt_err *err)
-{
-    double norm = 0.0;
-    MT_TRY(mt_ldl_inverse_norm(&s->f, scratch, &norm, err));
-    *below = norm <= most;
-    return MT_OK;
 }
 
 /*

@@ -32,8 +32,6 @@ typedef enum mt_saddle_kind {
     MT_SADDLE_SOFT
 } mt_saddle_kind;
 
-/* True where this is cheaper than the dense method (eliminate.h). */
-bool mt_saddle_pays(const mt_system *sys);
 /* The system with the first m rows of A = l->row. value: work for all entries of the layout's
  * envelope, overwritten; may be l->h where that is H. Results in mem. Fails: MT_E_MEMORY,
  * MT_E_DOMAIN. */
@@ -45,9 +43,6 @@ mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, 
                           double *y, mt_arena *scratch, mt_err *err);
 /* True where all eigenvalues of H on the motions that A allows are above 0. */
 bool mt_saddle_convex(const mt_saddle *s);
-/* *below: the norm of the inverse, in scaled units, is safely below `most`. */
-mt_status mt_saddle_below(const mt_saddle *s, double most, mt_arena *scratch, bool *below,
-                          mt_err *err);
 
 /*
  * The saddle-point system of a trimmed stage, by the factor of the one in which the drive is

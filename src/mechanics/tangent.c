@@ -177,31 +177,3 @@ mt_status mt_tangent_complete(mt_linear *lin, mt_err *err)
     lin->due = false;
     return MT_OK;
 }
-
-mt_status mt_tangent_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err)
-{
-    const mt_system *const sys = lin->sys;
-    const size_t size = (size_t)sys->nq * (size_t)sys->nq;
-    const mt_linear_tangent *const t = lin->tangent == NULL ? NULL : &lin->tangent[p];
-    memset(out, 0, size * sizeof *out);
-    if (t == NULL || t->lambda == NULL) {
-        return MT_OK;
-    }
-    mt_lagrangian l;
-    mt_placement at = lin->position.at;
-    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
-    MT_TRY(mt_lagrangian_init(&l, sys, true, &lin->scratch, err));
-    mt_cx *const own = mt_arena_alloc(&lin->scratch, (size_t)sys->n_constraints, sizeof *own);
-    MT_TRY(mt_arena_check(&lin->scratch, err));
-    for (int i = 0; i < sys->n_constraints; i++) {
-        own[i] = sys->constraints[i].joint == joint ? t->lambda[i] : 0.0;
-    }
-    at.pose = t->pose;
-    l.slope = true;
-    lin->dual.input = p;
-    mt_data_vecs(&lin->dual);
-    mt_lagrangian_curve(&lin->dual, &at, sys->n_constraints, own, &l);
-    memcpy(out, l.h, size * sizeof *out);
-    mt_arena_rewind(&lin->scratch, mark);
-    return MT_OK;
-}

@@ -24,8 +24,5 @@ struct mt_linear_tangent {
 mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err);
 /* Fill those that are due. */
 mt_status mt_tangent_complete(mt_linear *lin, mt_err *err);
-/* out (nq x nq) := derivative of the contribution of one joint's equations to Kg; 0 without
- * loads. */
-mt_status mt_tangent_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err);
 
 #endif
