@@ -5,8 +5,8 @@
 #include "base/sorted.h"
 #include "mechanics/system.h"
 
-/* Shared by the files build_*.c while a system is made. A shortage is kept in the arena of the
- * system, which is checked at the end. */
+/* Shared by system.c and the files build*.c while a system is made. A shortage is kept in the
+ * arena of the system, which is checked at the end. */
 typedef struct mt_builder {
     mt_system *sys;
     const mt_model *model;
@@ -23,6 +23,11 @@ typedef struct mt_builder {
     mt_err *err;
 } mt_builder;
 
+/* Room for one more entry in list `name` of the system; NULL notes that memory is out. */
+#define MT_BUILD_GROW(b, name)                                                               \
+    mt_arena_grow(&(b)->sys->mem, (b)->sys->name, (b)->sys->n_##name, &(b)->sys->cap_##name, \
+                  sizeof *(b)->sys->name)
+
 mt_node mt_build_num(mt_builder *b, mt_num num); /* MT_ABSENT gives MT_NO_NODE */
 mt_node mt_build_num_or(mt_builder *b, mt_num num, mt_node otherwise);
 void mt_build_coordinates(mt_builder *b, const mt_num x[3], mt_node out[3]);
@@ -30,37 +35,28 @@ void mt_build_position(mt_builder *b, const mt_position *p, mt_node out[3]);
 int mt_build_vec(mt_builder *b, mt_vec_kind kind, const mt_node node[3], const char *what);
 int mt_build_perp(mt_builder *b, int axis, int which); /* which: 1, 2 */
 int mt_build_cross(mt_builder *b, int first, int second);
-mt_node mt_build_length(mt_builder *b, const mt_node from[3], const mt_node to[3]);
 /* Vector from the centre of the body (or the ground's origin) to the position. */
 int mt_build_arm(mt_builder *b, int body, const mt_node at[3], const char *what);
-int mt_build_body(mt_builder *b, const char *name, const mt_node centre[3], bool point_mass);
+mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);
 int mt_build_measure(mt_builder *b, const mt_measure_def *def);
 void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn);
-void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
 void mt_build_load(mt_builder *b, const mt_load_def *def);
-void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
-int mt_build_item(mt_builder *b, const char *name, mt_node mass);
 const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
 /* State body of an attachment, MT_GROUND for the ground; false where it is absent in this
  * configuration. */
 bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body);
-mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);
 /* Coordinate of a joint, or of a hinge of a link, given by its indices in the model (MT_ABSENT:
  * the other one); -1: absent in this configuration, or without a coordinate. */
 int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle);
-/* The node of a loss factor; MT_NO_NODE where it is absent or the constant 0. */
-mt_node mt_build_loss(mt_builder *b, mt_num loss_factor);
 /* ANGLE measure about a UNIT axis vector. In two dimensions axis is the global z. */
 int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);
 
+/* build_parts.c */
 mt_status mt_build_bodies(mt_builder *b);
 mt_status mt_build_links(mt_builder *b);
 /* Position of node `node` of a link. */
 void mt_build_link_node(mt_builder *b, int link, int node, mt_node out[3]);
 mt_status mt_build_joints(mt_builder *b);
 mt_status mt_build_springs(mt_builder *b);
-/* Equations of one joint between bodies at arms; for joints and hinges. */
-void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[2],
-                              const int arm[2], const int axis[2], mt_node length);
 
 #endif

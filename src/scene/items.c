@@ -20,7 +20,7 @@
 static const double ROUNDING = 1e-13;
 
 /* Bodies of the system come from bodies of the model, then from links, both in the order of the
- * file (mechanics/build.c). */
+ * file (mechanics/build_parts.c). */
 static void number_bodies(mt_scene_frame *f)
 {
     const mt_model *const m = f->model;
@@ -579,7 +579,7 @@ static void on_hinge(const mt_scene_frame *f, int link, int hinge, mt_scene_spri
 }
 
 /* Springs of the system from `first` on that are those of this spring of the model: they stand
- * in its order (mechanics/build.c), each with its very name. They become `index` of the
+ * in its order (mechanics/build_parts.c), each with its very name. They become `index` of the
  * view. Returns how many. */
 static int assign_view_spring(mt_scene_frame *f, int first, const char *name, int index)
 {
@@ -590,7 +590,7 @@ static int assign_view_spring(mt_scene_frame *f, int first, const char *name, in
     return n;
 }
 
-/* Those of a link, which stand before all others (mechanics/build_links.c). */
+/* Those of a link, which stand before all others (mechanics/build_parts.c). */
 static int springs_of_link(const mt_scene_frame *f, const mt_link *l)
 {
     enum { STRAINS_2D = 3, STRAINS_3D = 6 };
