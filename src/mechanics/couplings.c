@@ -35,7 +35,8 @@ static const char *spring_name(const mt_linear *lin, int term)
     return lin->sys->springs[lin->list[MT_TERM_STIFFNESS].terms[term].source].name;
 }
 
-int mt_couplings_end(const mt_linear *lin, int first)
+/* End of the spring that begins with term `first`. */
+static int spring_end(const mt_linear *lin, int first)
 {
     const int n = lin->list[MT_TERM_STIFFNESS].n_terms;
     int end = first + 1;
@@ -49,7 +50,7 @@ void mt_couplings_find(const mt_linear *lin, mt_coupling *coupling)
 {
     const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
     for (int first = 0; first < list->n_terms;) {
-        const int end = mt_couplings_end(lin, first);
+        const int end = spring_end(lin, first);
         bool pair = false;
         bool varies = false;
         for (int i = first; i < end; i++) {
@@ -203,7 +204,9 @@ static void restore_measure_rows(mt_linear *lin, int first_row, int end_row)
     }
 }
 
-bool mt_couplings_square(mt_linear *lin, int first, int end)
+/* Terms `first` .. `end` - 1 of one coupled spring. False for an indefinite matrix; the rows
+ * are then those of the measures. O(6 n). */
+static bool square_spring(mt_linear *lin, int first, int end)
 {
     const mt_term *const terms = lin->list[MT_TERM_STIFFNESS].terms;
     const int first_row = terms[first].first;
@@ -215,6 +218,18 @@ bool mt_couplings_square(mt_linear *lin, int first, int end)
     }
     write(lin, &g, first_row, end_row);
     return true;
+}
+
+void mt_couplings_square(mt_linear *lin, mt_coupling kind)
+{
+    const int n = lin->list[MT_TERM_STIFFNESS].n_terms;
+    for (int first = 0, end = 0; first < n; first = end) {
+        end = lin->coupling[first] == kind ? spring_end(lin, first) : first + 1;
+        const bool square = lin->coupling[first] == kind && square_spring(lin, first, end);
+        for (int i = first; i < end && lin->coupling[i] == kind; i++) {
+            lin->squared[i] = square;
+        }
+    }
 }
 
 void mt_couplings_add(const mt_linear *lin, const mt_term *t, double *k)

@@ -15,15 +15,13 @@ typedef enum mt_coupling {
 /* coupling[n_terms] of the stiffness terms. */
 void mt_couplings_find(const mt_linear *lin, mt_coupling *coupling);
 /*
- * Terms `first` .. `end` - 1 of one coupled spring as a sum of squares at the present values:
- * fills factor_b (with factor_noise) and factor_c from the first row of the spring on, 0 in the
- * remaining rows. False for an indefinite matrix; the rows are then those of the measures. O(6
- * n).
+ * The springs with couplings of one kind as sums of squares at the present values, where they
+ * are some (lin->squared): fills factor_b (with factor_noise) and factor_c from the first row
+ * of each spring on, 0 in the remaining rows; the rows of an indefinite matrix are those of the
+ * measures.
  */
-bool mt_couplings_square(mt_linear *lin, int first, int end);
+void mt_couplings_square(mt_linear *lin, mt_coupling kind);
 /* k (n x n, lower) += the squares of the spring's rows of term t, after mt_couplings_square. */
 void mt_couplings_add(const mt_linear *lin, const mt_term *t, double *k);
-/* End of the spring that begins with term `first`. */
-int mt_couplings_end(const mt_linear *lin, int first);
 
 #endif

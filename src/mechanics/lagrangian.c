@@ -443,13 +443,6 @@ void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, dou
     }
 }
 
-void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem)
-{
-    l->layout = sys->layout;
-    l->row = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *l->row);
-    l->h = mt_arena_f64(mem, sys->layout->envelope.count, 1);
-}
-
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err)
 {

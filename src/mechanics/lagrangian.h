@@ -182,8 +182,6 @@ mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_are
                                   mt_err *err);
 /* out[nq] += A^T lambda, of the first m rows. */
 void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, double *out);
-/* Switch to rows and a sparse Hessian; a shortage is the arena's. */
-void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem);
 /* Fill terms, pieces and push as well, from the next evaluation on. */
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err);

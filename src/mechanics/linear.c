@@ -686,20 +686,6 @@ static void add_terms(const mt_linear *lin, int kind, int which, double *out)
     }
 }
 
-/* The springs with couplings of one kind as sums of squares, where they are some. */
-static void square_couplings(mt_linear *lin, mt_coupling kind)
-{
-    const int n = lin->list[MT_TERM_STIFFNESS].n_terms;
-    for (int first = 0, end = 0; first < n; first = end) {
-        end = lin->coupling[first] == kind ? mt_couplings_end(lin, first) : first + 1;
-        const bool square =
-            lin->coupling[first] == kind && mt_couplings_square(lin, first, end);
-        for (int i = first; i < end && lin->coupling[i] == kind; i++) {
-            lin->squared[i] = square;
-        }
-    }
-}
-
 /* k += the coupled springs that depend on no input, by their squares where possible, which
  * makes cancelling entries exactly 0. */
 static void add_couplings(const mt_linear *lin, double *k)
@@ -771,7 +757,7 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
             lin->factor_noise[r + (c * rows)] = lin->noise[c + (r * n)];
         }
     }
-    square_couplings(lin, MT_COUPLING_WHOLE);
+    mt_couplings_square(lin, MT_COUPLING_WHOLE);
     add_couplings(lin, lin->k_fixed);
     return MT_OK;
 }
@@ -792,7 +778,7 @@ static void assemble_stiffness(mt_linear *lin)
     memcpy(lin->k, lin->k_fixed, n * n * sizeof *lin->k);
     add_terms(lin, MT_TERM_STIFFNESS, 1, lin->k);
     mt_symmetrise_lower(lin->n, lin->k);
-    square_couplings(lin, MT_COUPLING_VARIES);
+    mt_couplings_square(lin, MT_COUPLING_VARIES);
     memcpy(lin->factor_g, lin->g_fixed, n * n * sizeof *lin->factor_g);
     lin->has_factor_g = lin->kg != NULL;
     for (int i = 0; i < stiffness->n_terms; i++) {

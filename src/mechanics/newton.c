@@ -80,6 +80,14 @@ static mt_status saddle_below(const mt_saddle *s, double most, mt_arena *scratch
     return MT_OK;
 }
 
+/* Switch to rows and a sparse Hessian; a shortage is the arena's. */
+static void want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem)
+{
+    l->layout = sys->layout;
+    l->row = mt_arena_alloc(mem, (size_t)sys->n_constraints, sizeof *l->row);
+    l->h = mt_arena_f64(mem, sys->layout->envelope.count, 1);
+}
+
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err)
 {
@@ -92,7 +100,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     w->trim = mt_arena_f64(mem, nq, 1);
     if (saddle_pays(sys)) {
         w->sparse = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim};
-        mt_lagrangian_want_rows(&w->sparse, sys, mem);
+        want_rows(&w->sparse, sys, mem);
         w->least = mt_arena_f64(mem, sys->layout->envelope.count, 1);
         w->turn = mt_arena_f64(mem, m, 1);
     } else {
