@@ -42,7 +42,8 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
 /* Parts of mt_describe_design. describe_goals.c: place and solve everything of `fresh` at t and
- * judge every goal. *motion_margin: as of mt_describe_motions. */
+ * judge every goal. *motion_margin: the least margin between the positions of drives; HUGE_VAL:
+ * none. */
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, double *motion_margin, mt_err *err);
 /* describe_bands.c: the number of goals that avoid bands, counted per configuration; judge them
@@ -52,37 +53,16 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
 int mt_describe_avoid_count(const mt_problem *p);
 mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
-/* describe_motion.c: the number of families of positions of one drive that avoid bands; each is
- * judged over its motion as an additional goal, and as a row of rec->motions. After the
- * configurations of `fresh` are solved. *room: the least margin between their positions;
- * HUGE_VAL: none. */
-int mt_describe_motion_count(const mt_problem *p);
 /* "-3.2 deg", a position of a family in its displayed unit. NULL where memory is out. */
 const char *mt_describe_position(const mt_study *study, const mt_drive_positions *f, double at,
                                  mt_arena *mem);
-mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
-                              double *room, mt_err *err);
 /* Clearance of each mode from its neighbouring bands, modes below each band, the least
  * clearance. Nothing for an unstable configuration. */
 mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);
-/* describe_tolerance.c: ranges of modes and expressions over the tolerances of fresh's
- * design, after its configurations are solved. Nothing without tolerances. */
-mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err);
-/* Judge a requirement by its worst value, which goes into g. *violation (relative) and *percent
- * (of the required value): in: at the design; out: at the worst. */
-mt_status mt_describe_worst(mt_workspace *fresh, const mt_requirement *d, mt_result *result,
-                            mt_result_goal *g, double *violation, double *percent, mt_err *err);
-/* The frequency nearest to a band, or deepest inside it, that a mode at hz reaches over the
- * tolerances; *at: [n] the design there. NaN and NULL without tolerances. */
-double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const mt_band *band,
-                            double hz, const double **at);
 /* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is identified. NULL:
  * memory. */
 const char *mt_describe_identity(const mt_configuration_work *view, int named, mt_arena *mem);
-/* True where the mode of the requirement is identified, or its frequency is that of all
- * candidates. */
-bool mt_describe_is_told(const mt_configuration_work *view, const mt_requirement *d);
 /* describe_curves.c: judge the goals of forced vibration. */
 mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
@@ -91,10 +71,7 @@ mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recom
 const char *mt_describe_response_limit(const mt_response_limit *s, mt_arena *mem);
 const char *mt_describe_response_value(const mt_goal *g, double value, mt_arena *mem);
 const char *mt_describe_response_kind(const mt_response_limit *s);
-/* The relative deviation of the value q of a requirement from its required value; violation: in
- * the measure of its kind. */
-double mt_describe_off_by(const mt_requirement *d, double q, double violation);
-/* describe_motion.c: goals that limit a number, between the named positions of drives. */
+/* describe_goals.c: goals that limit a number, between the named positions of drives. */
 mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
 /* describe_frequencies.c: compare modes; after mt_describe_goals, which solves the

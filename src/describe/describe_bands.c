@@ -116,6 +116,24 @@ static const char *avoid_text(const mt_goal *g, const char *configuration, mt_ar
                                                              : up_to);
 }
 
+/* The frequency nearest to a band, or deepest inside it, that a mode at hz reaches over the
+ * tolerances; *at: [n] the design there. NaN and NULL without tolerances. */
+static double find_worst_hz(const mt_workspace *fresh, int view, int mode, const mt_band *band,
+                            double hz, const double **at)
+{
+    const mt_tolerance_range *const r = mt_ranges_hz(mt_tolerance_known(fresh), view, mode);
+    const double middle = sqrt(fmax(band->lower_hz, 0.0) * band->upper_hz);
+    *at = NULL;
+    if (r == NULL) {
+        return nan("");
+    }
+    const mt_tolerance_side side = hz > middle ? MT_LOWEST : MT_HIGHEST;
+    const double end = r->value[side];
+    *at = r->at[side];
+    /* one that crosses the band from one side to the other is in its middle on the way */
+    return side == MT_LOWEST ? fmax(end, fmin(middle, hz)) : fmin(end, fmax(middle, hz));
+}
+
 /* Of all modes beside all bands the clearance that comes nearest to its margin, or falls short
  * of it most; the first of equal ones. */
 typedef struct tightest {
@@ -135,9 +153,8 @@ static tightest find_tightest(const mt_workspace *fresh, int view, const mt_band
     while (mt_mode_band_pairs_next(&p)) {
         const double *at = NULL;
         double asked = 0.0;
-        const double hz = over_tolerances
-                              ? mt_describe_worst_hz(fresh, view, p.mode, p.band, p.hz, &at)
-                              : p.hz;
+        const double hz =
+            over_tolerances ? find_worst_hz(fresh, view, p.mode, p.band, p.hz, &at) : p.hz;
         const double has = standing(p.band, hz, &asked);
         t.missing = fmax(t.missing, missing_percent(p.band, hz));
         const double room = mt_without_noise(has - asked, MT_PERCENT_NOISE);
@@ -224,7 +241,7 @@ static mt_status add_clearance(const listing *l, int band, int mode, double hz, 
                                .band_id = l->first + band + 1,
                                .mode = mode,
                                .hz = hz};
-    c->worst_hz = mt_describe_worst_hz(l->fresh, l->view, mode, b, hz, &at);
+    c->worst_hz = find_worst_hz(l->fresh, l->view, mode, b, hz, &at);
     c->worst_percent = MT_HAS(c->worst_hz) ? clearance(b, c->worst_hz, &side) : nan("");
     c->worst_percent = isfinite(c->worst_percent) ? c->worst_percent : nan("");
     c->percent = clearance(b, hz, &side); /* infinite at 0 Hz, which no ratio reaches */
