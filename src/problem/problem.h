@@ -24,10 +24,10 @@
  * = x / scale. The total change is
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Files: problem.c compiles; goals.c, goal_*.c are the kinds of goal, objective.c those of
- * objectives; rows.h and requirement.c, avoidance.c, tolerance_eval.c, objective.c the kinds of
- * rows, which evaluate.c lays out and evaluates; drive_positions.c ties the positions of one
- * drive.
+ * Files: problem.c compiles; goals.c, forced_response.c and goal_frequency_response.c are the
+ * kinds of goal, objective.c those of objectives; rows.h and requirement.c, avoidance.c,
+ * tolerance.c, objective.c the kinds of rows, which evaluate.c lays out and evaluates;
+ * drive_positions.c ties the positions of one drive.
  */
 
 /* A configuration that goals name; in a subproblem also a further position of a drive. */

@@ -158,11 +158,26 @@ mt_status mt_requirement_eval(mt_workspace *w, const mt_requirement *d, bool wit
     return MT_OK;
 }
 
+/* mt_forced_response_find_peak at another position of the drive: another analysis of the
+ * mechanism, solved with all shapes. */
+static mt_status find_peak_at(mt_workspace *w, const mt_requirement *d, mt_analysis *a,
+                              mt_forced_response_value *out, mt_err *err)
+{
+    mt_configuration_work *const view = &w->views[d->view];
+    mt_analysis *const own = view->analysis;
+    mt_forced_response_close(view);
+    view->analysis = a;
+    const mt_status rc = mt_forced_response_find_peak(w, d, out, err);
+    mt_forced_response_close(view);
+    view->analysis = own;
+    return rc;
+}
+
 mt_status mt_requirement_find_peak(mt_workspace *w, const mt_requirement *d, mt_analysis *a,
                                    mt_forced_response_value *out, mt_err *err)
 {
     if (d->ops->look != NULL) {
-        return mt_forced_response_find_peak_at(w, d, a, out, err);
+        return find_peak_at(w, d, a, out, err);
     }
     mt_configuration_work *const view = &w->views[d->view];
     const mt_configuration_work own = *view;

@@ -100,17 +100,10 @@ typedef struct mt_row_ops {
 MT_ROW_KIND_LIST(MT_ROW_OPS)
 #undef MT_ROW_OPS
 
-/* A row of this kind about nothing: indices -1, numbers NaN. */
-mt_row mt_row_init(mt_row_kind kind, mt_row_sense sense);
 /* 1 for MT_AT_LEAST, -1 for MT_AT_MOST: the sign of the value in the row. */
 static inline double mt_row_sign(const mt_row *row)
 {
     return row->sense == MT_AT_MOST ? -1.0 : 1.0;
 }
-/* Appends a row. Fails: MT_E_MEMORY. */
-mt_status mt_rows_append(mt_row_block *block, const mt_row *row, mt_arena *mem, mt_err *err);
-/* Makes the arrays that the search problem reads, with room for `more` further rows. Fails:
- * MT_E_MEMORY. */
-mt_status mt_rows_finish(mt_row_block *block, int more, mt_arena *mem, mt_err *err);
 
 #endif

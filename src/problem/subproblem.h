@@ -113,4 +113,12 @@ mt_missed mt_subproblem_missed(const mt_subproblem *c, const mt_nlp_values *v);
 mt_status mt_subproblem_values_init(const mt_subproblem *c, mt_arena *mem, mt_nlp_values *out,
                                     mt_err *err);
 
+/* A row of this kind about nothing: indices -1, numbers NaN. */
+mt_row mt_row_init(mt_row_kind kind, mt_row_sense sense);
+/* Appends a row. Fails: MT_E_MEMORY. */
+mt_status mt_rows_append(mt_row_block *block, const mt_row *row, mt_arena *mem, mt_err *err);
+/* Makes the arrays that the search problem reads, with room for `more` further rows. Fails:
+ * MT_E_MEMORY. */
+mt_status mt_rows_finish(mt_row_block *block, int more, mt_arena *mem, mt_err *err);
+
 #endif
