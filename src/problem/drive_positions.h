@@ -96,10 +96,4 @@ mt_status mt_drive_positions_bands(const mt_problem *p, const mt_drive_positions
                                    const double *at, double left, double right, mt_arena *mem,
                                    mt_band_along_paths *out, mt_err *err);
 
-/* Limits at positions of a drive that the study does not name: each cut that has one adds a
- * configuration and its requirement to those of the subproblem. Called by mt_subproblem_lay_out
- * after the bands; cuts of bands are ignored here. Fails: MT_E_MEMORY. */
-mt_status mt_at_position_add(mt_subproblem *c, int n_cuts, const mt_cut *cuts, mt_arena *mem,
-                             mt_err *err);
-
 #endif

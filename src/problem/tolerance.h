@@ -100,13 +100,9 @@ double mt_tolerance_of_variable(const mt_problem *p, int i);
 /* True where a target (or "equals") is a range over the tolerances. For use before rows are
  * numbered; afterwards see requirement->role. */
 bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d);
-/* tolerance_eval.c: solves the modes at all corners of the design w->x. No effect without
+/* Solves the modes at all corners of the design w->x. No effect without
  * tolerances, as the functions below. */
 mt_status mt_tolerance_solve(mt_workspace *w, bool with_gradient, mt_err *err);
-/* Makes the subproblem's tolerance_box (NULL where no variable has a tolerance) and appends its
- * rows. Fails: MT_E_INPUT where a goal cannot be evaluated over tolerances, with the reason;
- * MT_E_MEMORY, numerical failures. */
-mt_status mt_tolerance_lay_out(const mt_row_layout *l, mt_err *err);
 /* The corners of a configuration; of view -1: of the limit that this requirement is. */
 const mt_tolerance_corners *mt_tolerance_corners_of(const mt_subproblem *c, int view,
                                                     int requirement);
@@ -117,9 +113,6 @@ int mt_tolerance_next_row(const mt_subproblem *c, int from);
 bool mt_tolerance_row_is_sampled(const mt_subproblem *c, const mt_row *row);
 /* True where a limit of the subproblem is evaluated at sampled corners. */
 bool mt_tolerance_is_sampled(const mt_subproblem *c);
-/* Margin of the row for the value `value`: relative, for frequencies logarithmic; negative:
- * violated. Without the clearance. */
-double mt_tolerance_row_margin(const mt_subproblem *c, const mt_row *row, double value);
 /* mt_avoidance_find_modes after the configuration has been solved, over the tolerances where
  * there are any: the value that the objective "clearance" maximises. */
 double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c);

@@ -9,6 +9,7 @@
 #include "problem/avoidance.h"
 #include "problem/configuration.h"
 #include "problem/evaluate.h"
+#include "problem/requirement.h"
 
 /* Factors that differ by less are those of one corner: rounding of x (1 + tolerance) / x. */
 static const double SAME_FACTOR = 1e-12;
@@ -16,6 +17,18 @@ static const double SAME_FACTOR = 1e-12;
  * largest tolerance (where slopes vanish the way is short): worse points, three times as far,
  * are not looked for before the design is described. */
 static const double FAR = 2.0;
+
+/* Margin of the row for the value `value`: relative, for frequencies logarithmic; negative:
+ * violated. Without the clearance. */
+static double row_margin(const mt_subproblem *c, const mt_row *row, double value)
+{
+    const double sign = mt_row_sign(row);
+    if (row->view >= 0) {
+        return sign * -mt_log_ratio(row->limit, value);
+    }
+    return sign * (value - row->limit) /
+           mt_requirement_unit(&c->requirements[row->requirement], row->limit);
+}
 
 /* True where two rows limit one value on one side, at two corners. */
 static bool is_same(const mt_row *a, const mt_row *b)
@@ -96,7 +109,7 @@ static mt_status verify_tolerance_rows(const mt_workspace *w, const mt_ranges *r
         if (range == NULL) {
             continue;
         }
-        const double room = mt_tolerance_row_margin(c, row, range->value[row->sense]);
+        const double room = row_margin(c, row, range->value[row->sense]);
         const double wanted = row->requirement < 0 && c->clearance ? w->t[c->p->n] : 0.0;
         mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
         cuts->band_margin =
@@ -194,11 +207,10 @@ static mt_status verify_first(mt_workspace *w, const mt_row *row, double *x, mt_
     if (pos < 0) {
         return MT_OK; /* what is not there is judged by samples */
     }
-    const double room = mt_tolerance_row_margin(c, row, mt_modal_hz(&a->modes, pos));
+    const double room = row_margin(c, row, mt_modal_hz(&a->modes, pos));
     const double wanted = row->requirement < 0 && c->clearance ? w->t[c->p->n] : 0.0;
     const mt_modes *const modes = &view->analysis->modes;
-    const double here =
-        mt_tolerance_row_margin(c, row, mt_modal_hz(modes, mt_modal_flexible(modes, mode)));
+    const double here = row_margin(c, row, mt_modal_hz(modes, mt_modal_flexible(modes, mode)));
     const double way = fmax(fabs(here - room), largest_tolerance(w->p));
     /* of bands the least room is asked for, wherever it is */
     *far = (row->requirement >= 0 || c->clearance) && room - wanted > FAR * way;

@@ -687,26 +687,3 @@ mt_status mt_tolerance_ranges_of_rows(mt_workspace *w, const bool *leave, mt_are
 {
     return find_ranges(w, true, leave, mem, out, err);
 }
-
-bool mt_ranges_proven(const mt_ranges *r)
-{
-    bool proven = r != NULL;
-    for (int i = 0; proven && i < r->n_views; i++) {
-        proven = r->n[i] == 0 || r->hz[i][0].proven;
-    }
-    for (int k = 0; proven && k < r->n_limits; k++) {
-        const bool limit = r->number[k].at[MT_LOWEST] != NULL;
-        proven = !limit || r->number[k].proven;
-    }
-    return proven;
-}
-
-const mt_ranges *mt_tolerance_known(const mt_workspace *w)
-{
-    return w->tolerance_box != NULL ? w->tolerance_box->ranges : NULL;
-}
-
-const mt_tolerance_range *mt_ranges_hz(const mt_ranges *r, int view, int mode)
-{
-    return r != NULL && mode >= 1 && mode <= r->n[view] ? &r->hz[view][mode - 1] : NULL;
-}
