@@ -10,7 +10,6 @@
 #include "problem/configuration.h"
 #include "problem/requirement.h"
 #include "prove/certify.h"
-#include "prove/reach.h"
 #include "search/proof.h"
 
 static mt_status state(mt_result *result, const char *kind, bool proven, mt_err *err,

@@ -153,23 +153,6 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi)
     return true;
 }
 
-void mt_enclosure_note_held(mt_enclosure *e)
-{
-    for (int i = 0; i < e->n_coefficients; i++) {
-        e->coefficients[i].held =
-            e->coefficients[i].part[MT_STIFFNESS].count > 0 && e->value[MT_LOW][i] > 0.0;
-    }
-}
-
-bool mt_enclosure_keeps_held(const mt_enclosure *e)
-{
-    bool keeps = true;
-    for (int i = 0; i < e->n_coefficients; i++) {
-        keeps = keeps && (!e->coefficients[i].held || e->value[MT_LOW][i] > 0.0);
-    }
-    return keeps;
-}
-
 /* w (lower) := A - sigma M. */
 static void shifted(const mt_enclosure *e, const double *k, const double *m, double sigma,
                     double *w)

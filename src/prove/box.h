@@ -12,11 +12,6 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
  * Where the identifiers of two nested boxes are equal, so are the corners (but for one pair in
  * 2^31, where the count at the outer corner still bounds the inner box). */
 int mt_enclosure_corner_key(const mt_enclosure *e, mt_side side);
-/* note_held stores which stiffnesses are positive all over the current box; keeps_held is true
- * where they are so all over the box set later. Where one is not, a design of that box may have
- * an additional rigid-body mode. */
-void mt_enclosure_note_held(mt_enclosure *e);
-bool mt_enclosure_keeps_held(const mt_enclosure *e);
 /* Bounds of the number of vibration modes below lambda [rad^2/s^2] over the box: no design has
  * more eigenvalues <= lambda than `most`, every design has at least `least` eigenvalues <
  * lambda (lambda shifted up or down by the rounding slack). Where nothing is proven: n_modes

@@ -10,12 +10,17 @@
 /* A variable is bisected this often at most: 2^-40 of the bounds, far below any tolerance. */
 enum { MOST_DEPTH = 40 };
 
+/* True where input i enters K or M. */
+static bool enters(const mt_enclosure *e, int i)
+{
+    return e->in[MT_STIFFNESS][i] || e->in[MT_MASS][i];
+}
+
 static bool depends(const mt_certify *c, int i, bool loose_only, const bool *bound)
 {
     bool any = !loose_only && bound[i];
     for (int v = 0; v < c->n_views; v++) {
-        any = any || (loose_only ? mt_enclosure_loose(c->views[v], i)
-                                 : mt_enclosure_depends(c->views[v], i));
+        any = any || (loose_only ? mt_enclosure_loose(c->views[v], i) : enters(c->views[v], i));
     }
     return any;
 }

@@ -5,7 +5,7 @@
  *     least_below(b) <= j <= most_below(a),
  * so the box is done with where for some band (or limit, or bound) nothing is left, or where
  * all assignments that are left are known. Else the box is halved; what is known of it holds in
- * its halves (edges.h). Where a single unknown assignment is left, or a pass ends, the middle
+ * its halves. Where a single unknown assignment is left, or a pass ends, the middle
  * of the box is tried: a design that meets everything makes its assignment known. Catalogues
  * only thin the boxes out, and a cap cuts off those whose designs are all too costly: with the
  * objective of a known design as cap, "nothing found, nothing open" proves that none is better.
@@ -23,8 +23,93 @@
 #include <math.h>
 #include <string.h>
 
+#include "prove/box.h"
 #include "prove/boxes.h"
-#include "prove/edges.h"
+
+/* Modes below the edges of bands and limits, over nested boxes. */
+
+static void add_band_edge(mt_edges *d, int view, double hz, mt_side asked)
+{
+    const int k = d->n++;
+    d->edges[k] = (mt_edge){view, mt_enclosure_lambda(hz), asked};
+    d->root[k] = 0;
+}
+
+mt_status mt_edges_init(mt_edges *d, const mt_certify *c, mt_arena *mem, mt_err *err)
+{
+    const size_t most = 2 * ((size_t)c->n_bands + (size_t)c->n_limits);
+    const size_t corners = 2 * (size_t)c->n_views;
+    *d = (mt_edges){.c = c, .n_known = (int)(2 * most + corners)};
+    d->edges = mt_arena_alloc(mem, most, sizeof *d->edges);
+    d->root = mt_arena_int(mem, (size_t)d->n_known);
+    d->fresh = mt_arena_alloc(mem, corners, sizeof *d->fresh);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->n_bands; i++) {
+        const mt_certify_band *const b = &c->bands[i];
+        add_band_edge(d, b->view, b->lower_hz * (1.0 + b->tolerance), MT_LOW);
+        add_band_edge(d, b->view, b->upper_hz * (1.0 - b->tolerance), MT_HIGH);
+    }
+    for (int i = 0; i < c->n_limits; i++) {
+        const mt_certify_limit *const l = &c->limits[i];
+        add_band_edge(d, l->view, l->at_most_hz * (1.0 + l->tolerance), MT_LOW);
+        add_band_edge(d, l->view, l->at_least_hz * (1.0 - l->tolerance), MT_HIGH);
+    }
+    for (int k = 0; k < d->n; k++) {
+        /* no vibration mode lies below 0 Hz */
+        d->root[d->n + k] = d->edges[k].lambda > 0.0 ? c->views[d->edges[k].view]->n_modes : 0;
+    }
+    for (size_t k = 2 * most; k < 2 * most + corners; k++) {
+        d->root[k] = -1;
+    }
+    return MT_OK;
+}
+
+void mt_edges_use(mt_edges *d, int *now)
+{
+    int *const keys = now + (2 * (ptrdiff_t)d->n);
+    d->now = now;
+    for (int v = 0; v < d->c->n_views; v++) {
+        for (mt_side s = MT_LOW; s <= MT_HIGH; s++) {
+            const int key = mt_enclosure_corner_key(d->c->views[v], s);
+            const int at = (2 * v) + (s == MT_LOW ? 0 : 1);
+            d->fresh[at] = key != keys[at];
+            keys[at] = key;
+        }
+    }
+}
+
+/* Count at one corner. */
+static void count_at_corner(mt_edges *d, int edge, mt_side side)
+{
+    const mt_edge *const g = &d->edges[edge];
+    mt_enclosure *const e = d->c->views[g->view];
+    int *const fewest = &d->now[edge];
+    int *const most = &d->now[d->n + edge];
+    if (*fewest >= *most || !d->fresh[(2 * g->view) + (side == MT_LOW ? 0 : 1)]) {
+        return;
+    }
+    if (side == MT_LOW) {
+        const int n = mt_enclosure_most_below(e, g->lambda);
+        *most = n < *most ? n : *most;
+    } else {
+        const int n = mt_enclosure_least_below(e, g->lambda);
+        *fewest = n > *fewest ? n : *fewest;
+    }
+}
+
+int mt_edges_count(mt_edges *d, int edge)
+{
+    const mt_side asked = d->edges[edge].asked;
+    int *const known = &d->now[asked == MT_LOW ? d->n + edge : edge];
+    const int before = *known;
+    count_at_corner(d, edge, asked);
+    if (*known == before) { /* halving no longer helps: the other side tells if all is known */
+        count_at_corner(d, edge, asked == MT_LOW ? MT_HIGH : MT_LOW);
+    }
+    return *known;
+}
+
+/* The search itself. */
 
 /* What a box costs beside its corners: bounds, the cap, the middle, the list of assignments; in
  * multiplications of a factorisation. */
@@ -594,6 +679,105 @@ mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_are
         if (boxes != NULL) {
             *boxes = out.boxes;
         }
+    }
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}
+
+/* What one mode can reach in a box. */
+
+/* Frequencies of the modes of a view over the box, in scratch; NULL where nothing is known. */
+static mt_status ranges_of(const mt_certify *c, int view, mt_arena *scratch, double **low,
+                           double **high, mt_err *err)
+{
+    mt_enclosure *const e = c->views[view];
+    *low = NULL;
+    *high = NULL;
+    if (!mt_enclosure_set(e, c->lower, c->upper)) {
+        return MT_OK;
+    }
+    *low = mt_arena_f64(scratch, (size_t)e->n_modes, 1);
+    *high = mt_arena_f64(scratch, (size_t)e->n_modes, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    return mt_enclosure_ranges(e, *low, *high, err);
+}
+
+static bool exists(const mt_certify *c, const mt_certify_limit *l)
+{
+    return l->mode >= 1 && l->mode <= c->views[l->view]->n_modes;
+}
+
+static bool is_missed(const mt_certify_limit *l, double low_hz, double high_hz)
+{
+    return high_hz < l->at_least_hz * (1.0 - l->tolerance) ||
+           low_hz > l->at_most_hz * (1.0 + l->tolerance);
+}
+
+static mt_status find_reachable_range(const mt_certify *c, int limit, mt_arena *scratch,
+                                      mt_certify_reach *out, mt_err *err)
+{
+    const mt_certify_limit *const l = &c->limits[limit];
+    mt_certify one = *c;
+    *out = (mt_certify_reach){MT_VERDICT_IMPOSSIBLE, nan(""), nan(""), 0};
+    double *low = NULL;
+    double *high = NULL;
+    if (!exists(c, l)) {
+        return MT_OK;
+    }
+    MT_TRY(ranges_of(c, l->view, scratch, &low, &high, err));
+    if (low != NULL) {
+        out->low_hz = low[l->mode - 1];
+        out->high_hz = high[l->mode - 1];
+    }
+    if (is_missed(l, out->low_hz, out->high_hz)) {
+        return MT_OK;
+    }
+    one.n_bands = 0;
+    one.n_bounds = 0;
+    one.limits = l;
+    one.n_limits = 1;
+    return mt_certify_possible(&one, NULL, scratch, &out->verdict, NULL, &out->boxes, err);
+}
+
+mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
+                              mt_certify_reach *out, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = find_reachable_range(c, limit, scratch, out, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}
+
+/* Limits of one view. */
+static mt_status any_missed(const mt_certify *c, int view, mt_arena *scratch, bool *out,
+                            mt_err *err)
+{
+    double *low = NULL;
+    double *high = NULL;
+    bool known = false;
+    for (int i = 0; i < c->n_limits && !*out; i++) {
+        const mt_certify_limit *const l = &c->limits[i];
+        if (l->view != view) {
+            continue;
+        }
+        if (!known) {
+            MT_TRY(ranges_of(c, view, scratch, &low, &high, err));
+            known = true;
+        }
+        *out =
+            !exists(c, l) || (low != NULL && is_missed(l, low[l->mode - 1], high[l->mode - 1]));
+    }
+    return MT_OK;
+}
+
+mt_status mt_certify_out_of_reach(const mt_certify *c, mt_arena *scratch, bool *out,
+                                  mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    mt_status rc = MT_OK;
+    *out = false;
+    for (int v = 0; v < c->n_views && rc == MT_OK && !*out; v++) {
+        rc = any_missed(c, v, scratch, out, err);
     }
     mt_arena_rewind(scratch, mark);
     return rc;

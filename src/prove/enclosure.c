@@ -1293,11 +1293,6 @@ bool mt_enclosure_loose(const mt_enclosure *e, int i)
     return e->in[MT_STIFFNESS][i] && e->in[MT_MASS][i];
 }
 
-bool mt_enclosure_depends(const mt_enclosure *e, int i)
-{
-    return e->in[MT_STIFFNESS][i] || e->in[MT_MASS][i];
-}
-
 /* Effect of raising input k over the box whose gradient is in dnode. */
 static int effect(const mt_enclosure *e, int k)
 {

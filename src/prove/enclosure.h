@@ -53,7 +53,7 @@ typedef struct mt_enclosure_coefficient {
     /* [n_inputs] sign of the derivative over the bounds; 0: zero, or it changes */
     signed char *sign;
     bool monotone; /* monotone in all its inputs over the bounds */
-    /* a stiffness that was positive over the box that mt_enclosure_note_held noted */
+    /* a stiffness that was positive over the box that was noted (tolerance.c) */
     bool held;
     double least; /* minimum over the bounds */
     /* maximum over the bounds; where it is 0, a box beyond the bounds in which the coefficient
@@ -154,10 +154,9 @@ bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inp
  */
 enum { MT_STIFFENS = 1, MT_SOFTENS = 2 };
 void mt_enclosure_effects(mt_enclosure *e, const double *lo, const double *hi, int *effects);
-/* loose: true where input i enters both K and M (only smaller boxes then make the enclosure
- * tight). depends: true where it enters K or M. */
+/* True where input i enters both K and M (only smaller boxes then make the enclosure
+ * tight). */
 bool mt_enclosure_loose(const mt_enclosure *e, int i);
-bool mt_enclosure_depends(const mt_enclosure *e, int i);
 
 /* found[n_inputs]: true for inputs that shape the geometry of stiffness and mass. */
 void mt_enclosure_shaping(const mt_analysis *a, bool *found);

@@ -97,6 +97,26 @@ static bool spent(const tolerance *t)
     return operations(t->c) - t->before >= most;
 }
 
+/* Store which stiffnesses are positive all over the current box. */
+static void note_held(mt_enclosure *e)
+{
+    for (int i = 0; i < e->n_coefficients; i++) {
+        e->coefficients[i].held =
+            e->coefficients[i].part[MT_STIFFNESS].count > 0 && e->value[MT_LOW][i] > 0.0;
+    }
+}
+
+/* True where those are positive all over the box set later. Where one is not, a design of that
+ * box may have an additional rigid-body mode. */
+static bool keeps_held(const mt_enclosure *e)
+{
+    bool keeps = true;
+    for (int i = 0; i < e->n_coefficients; i++) {
+        keeps = keeps && (!e->coefficients[i].held || e->value[MT_LOW][i] > 0.0);
+    }
+    return keeps;
+}
+
 /* True where the box is set and every edge kept over it. Notes why not. */
 static bool box_holds(tolerance *t, const double *lo, const double *hi)
 {
@@ -106,7 +126,7 @@ static bool box_holds(tolerance *t, const double *lo, const double *hi)
     }
     bool set = mt_certify_set(t->c, lo, hi);
     for (int v = 0; v < t->c->n_views; v++) { /* every stiffness is still there all over it */
-        set = set && mt_enclosure_keeps_held(t->c->views[v]);
+        set = set && keeps_held(t->c->views[v]);
     }
     if (!set) {
         t->end = MT_TOLERANCE_DOMAIN;
@@ -201,7 +221,7 @@ static mt_status find_tolerances(const mt_certify *c, const mt_tolerance_questio
     }
     if (mt_certify_set(c, q->x, q->x)) {
         for (int v = 0; v < c->n_views; v++) {
-            mt_enclosure_note_held(c->views[v]);
+            note_held(c->views[v]);
         }
     }
     *all = bisect_tolerance(&t, -1, 0.0);

@@ -13,8 +13,8 @@
 #include "problem/evaluate.h"
 #include "problem/objective.h"
 #include "problem/requirement.h"
+#include "prove/certify.h"
 #include "prove/enclosure.h"
-#include "prove/reach.h"
 
 /* Least values of the first objective over boxes. */
 

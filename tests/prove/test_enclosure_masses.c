@@ -3,7 +3,6 @@
  * four bands. All 210 monotone assignments are settled. */
 #include "mechanics/mech.h"
 #include "prove/certify.h"
-#include "prove/reach.h"
 #include "support/mt_alloc.h"
 
 enum { N = 6, BANDS = 4 };

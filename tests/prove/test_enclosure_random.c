@@ -10,7 +10,7 @@
 #include "mechanics/mech.h"
 #include "mt_writer.h"
 #include "prove/boxes.h"
-#include "prove/edges.h"
+#include "prove/certify.h"
 #include "prove/tolerance.h"
 #include "support/mt_random.h"
 

@@ -23,7 +23,7 @@ ALLOWED = arrows((ROOT / MAP).read_text(encoding="utf-8"))
 OPEN = {
     "nlp": {"nlp.h", "cone.h", "merit.h"},
     "scene": {"scene.h", "write.h"},
-    "prove": {"enclosure.h", "box.h", "certify.h", "reach.h", "tolerance.h", "band_count.h"},
+    "prove": {"enclosure.h", "box.h", "certify.h", "tolerance.h", "band_count.h"},
 }
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
 PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "profile": "environment", "mechanism": "library", "motion": "library", "deprecated": "library"}
