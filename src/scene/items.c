@@ -13,87 +13,11 @@
 #include "model/model.h"
 #include "model/values.h"
 
-/* Values of a design in one configuration, who is who in its system, and where what is drawn
- * stands: x + R (p - c) for a point p of a body with its centre drawn at c. */
+/* Where what is drawn stands: x + R (p - c) for a point p of a body with its centre drawn at
+ * c. */
 
 /* Coordinates below this part of their vector, or of the model's length, are rounding. */
 static const double ROUNDING = 1e-13;
-
-/* Bodies of the system come from bodies of the model, then from links, both in the order of the
- * file (mechanics/build_parts.c). */
-static void number_bodies(mt_scene_frame *f)
-{
-    const mt_model *const m = f->model;
-    int next = 0;
-    for (int i = 0; i < f->sys->n_bodies; i++) {
-        f->link_of[i] = MT_ABSENT;
-    }
-    for (int i = 0; i < m->n_bodies; i++) {
-        const bool there = mt_model_present(&m->bodies[i].in, f->configuration);
-        f->body_of[i] = there ? next++ : MT_ABSENT;
-    }
-    for (int i = 0; i < m->n_links; i++) {
-        const mt_link *const l = &m->links[i];
-        const bool there = mt_model_present(&l->in, f->configuration);
-        const int count = l->elements + (l->kind == MT_LINK_BEAM ? 1 : 0);
-        f->link_first[i] = there ? next : MT_ABSENT;
-        for (int k = 0; k < count && there; k++) {
-            f->link_of[next++] = i;
-        }
-    }
-}
-
-bool mt_scene_same_inputs(const mt_scene_query *a, const mt_scene_query *b)
-{
-    bool same = a != NULL && a->n_inputs == b->n_inputs;
-    for (int i = 0; i < b->n_inputs && same; i++) {
-        same = a->inputs[i] == b->inputs[i];
-    }
-    return same;
-}
-
-/* number[numbers of the model] of the design. */
-static mt_status find_numbers(const mt_scene_frame *f, double *number, mt_err *err)
-{
-    const mt_model *const m = f->model;
-    const mt_scene_query *const a = f->ask;
-    mt_scene_known *const k = f->known;
-    if (!mt_scene_same_inputs(k->numbered, a)) {
-        k->numbered = NULL;
-        MT_TRY(mt_numbers_new(m, f->configuration, a->n_inputs, a->inputs, m->n_nums, m->nums,
-                              f->kept, &k->numbers, err));
-        k->numbered = a;
-    }
-    return mt_numbers_at(&k->numbers, a->at, number, NULL, err);
-}
-
-mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err)
-{
-    const mt_model *const m = f->model;
-    const mt_scene_query *const a = f->ask;
-    double *const number = mt_arena_f64(f->work, (size_t)m->n_nums, 1);
-    double *const value = mt_arena_f64(f->work, (size_t)f->sys->program.count, 1);
-    mt_pose *const drawn = mt_arena_alloc(f->work, (size_t)f->sys->n_bodies, sizeof *drawn);
-    f->body_of = mt_arena_int(f->work, (size_t)m->n_bodies);
-    f->link_first = mt_arena_int(f->work, (size_t)m->n_links);
-    f->link_of = mt_arena_int(f->work, (size_t)f->sys->n_bodies);
-    MT_TRY(mt_arena_check(f->work, err));
-    MT_TRY(find_numbers(f, number, err));
-    MT_TRY(mt_program_eval(&f->sys->program, a->at, value, NULL, err));
-    for (int b = 0; b < f->sys->n_bodies; b++) {
-        const mt_vec_def *const centre = &f->sys->vecs[f->sys->bodies[b].centre];
-        drawn[b] = mt_pose_ground();
-        for (int k = 0; k < 3; k++) {
-            drawn[b].x[k] = value[centre->node[k]];
-        }
-    }
-    f->number = number;
-    f->value = value;
-    f->drawn = drawn;
-    f->pose = drawn;
-    number_bodies(f);
-    return MT_OK;
-}
 
 /* A position of the model in the reference position. */
 static void scene_drawn(const mt_scene_frame *f, const mt_position *p, double out[3])

@@ -47,19 +47,6 @@ typedef struct mt_scene_frame {
     mt_scene_way *way; /* for this configuration of this design */
 } mt_scene_frame;
 
-/* The system of the frame's configuration with a drive (NULL: none) at inputs
- * at[n_inputs of ask], and with a drive one more. */
-static inline mt_system_def mt_scene_system(const mt_scene_frame *f,
-                                            const mt_system_drive *drive, const double *at)
-{
-    return (mt_system_def){.model = f->model,
-                           .configuration = f->configuration,
-                           .drive = drive,
-                           .n_inputs = f->ask->n_inputs,
-                           .inputs = f->ask->inputs,
-                           .at = at};
-}
-
 /* A range of a driven joint to follow after everything is positioned; it needs nothing of the
  * design's analysis. */
 struct mt_scene_way {
@@ -70,11 +57,6 @@ struct mt_scene_way {
     double length; /* length of the mechanism, the scale of rounding of coordinates [m] */
 };
 
-/* True where both queries have the same inputs; false where a is NULL. */
-bool mt_scene_same_inputs(const mt_scene_query *a, const mt_scene_query *b);
-/* Set the values of the design and the index maps; sys, ask, model, configuration, mem, work
- * and view are given. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL. */
-mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err);
 /* Set components that are rounding for a vector of this size to 0. */
 void mt_scene_clean(double size, double x[3]);
 

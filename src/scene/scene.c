@@ -31,6 +31,19 @@ typedef struct scene_room {
     double work;
 } scene_room;
 
+/* The system of the frame's configuration with a drive (NULL: none) at inputs
+ * at[n_inputs of ask], and with a drive one more. */
+static mt_system_def system_of(const mt_scene_frame *f, const mt_system_drive *drive,
+                               const double *at)
+{
+    return (mt_system_def){.model = f->model,
+                           .configuration = f->configuration,
+                           .drive = drive,
+                           .n_inputs = f->ask->n_inputs,
+                           .inputs = f->ask->inputs,
+                           .at = at};
+}
+
 /* Shares of one mode of eigenvalue lambda. spring[springs of the view],
  * body[bodies of the view]. */
 typedef struct scene_energy scene_energy;
@@ -479,7 +492,7 @@ static mt_status prepare_positions(walk *w, const range *r, const mt_system_driv
         w->out->positions[i].at = positions[i];
     }
     at[ask->n_inputs] = nearest_of(n, positions);
-    const mt_system_def def = mt_scene_system(f, drive, at);
+    const mt_system_def def = system_of(f, drive, at);
     return mt_system_new_of(&def, &w->sys, err);
 }
 
@@ -566,7 +579,7 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
         return MT_OK;
     }
     if (modes) {
-        const mt_system_def def = mt_scene_system(f, &drive, at);
+        const mt_system_def def = system_of(f, &drive, at);
         MT_TRY(mt_analysis_new_of(&def, 0, &w->a, err));
         w->a->recount = true; /* a spring may get hold of a direction on the way */
     } else {
@@ -697,11 +710,92 @@ static mt_status draw(mt_scene_frame *f, mt_err *err)
     return mt_scene_lines(f, err);
 }
 
+/* Values of a design in one configuration, and who is who in its system. */
+
+/* Bodies of the system come from bodies of the model, then from links, both in the order of the
+ * file (mechanics/build.c). */
+static void number_bodies(mt_scene_frame *f)
+{
+    const mt_model *const m = f->model;
+    int next = 0;
+    for (int i = 0; i < f->sys->n_bodies; i++) {
+        f->link_of[i] = MT_ABSENT;
+    }
+    for (int i = 0; i < m->n_bodies; i++) {
+        const bool there = mt_model_present(&m->bodies[i].in, f->configuration);
+        f->body_of[i] = there ? next++ : MT_ABSENT;
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        const mt_link *const l = &m->links[i];
+        const bool there = mt_model_present(&l->in, f->configuration);
+        const int count = l->elements + (l->kind == MT_LINK_BEAM ? 1 : 0);
+        f->link_first[i] = there ? next : MT_ABSENT;
+        for (int k = 0; k < count && there; k++) {
+            f->link_of[next++] = i;
+        }
+    }
+}
+
+/* True where both queries have the same inputs; false where a is NULL. */
+static bool same_inputs(const mt_scene_query *a, const mt_scene_query *b)
+{
+    bool same = a != NULL && a->n_inputs == b->n_inputs;
+    for (int i = 0; i < b->n_inputs && same; i++) {
+        same = a->inputs[i] == b->inputs[i];
+    }
+    return same;
+}
+
+/* number[numbers of the model] of the design. */
+static mt_status find_numbers(const mt_scene_frame *f, double *number, mt_err *err)
+{
+    const mt_model *const m = f->model;
+    const mt_scene_query *const a = f->ask;
+    mt_scene_known *const k = f->known;
+    if (!same_inputs(k->numbered, a)) {
+        k->numbered = NULL;
+        MT_TRY(mt_numbers_new(m, f->configuration, a->n_inputs, a->inputs, m->n_nums, m->nums,
+                              f->kept, &k->numbers, err));
+        k->numbered = a;
+    }
+    return mt_numbers_at(&k->numbers, a->at, number, NULL, err);
+}
+
+/* Set the values of the design and the index maps; sys, ask, model, configuration, mem, work
+ * and view are given. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL. */
+static mt_status set_frame(mt_scene_frame *f, mt_err *err)
+{
+    const mt_model *const m = f->model;
+    const mt_scene_query *const a = f->ask;
+    double *const number = mt_arena_f64(f->work, (size_t)m->n_nums, 1);
+    double *const value = mt_arena_f64(f->work, (size_t)f->sys->program.count, 1);
+    mt_pose *const drawn = mt_arena_alloc(f->work, (size_t)f->sys->n_bodies, sizeof *drawn);
+    f->body_of = mt_arena_int(f->work, (size_t)m->n_bodies);
+    f->link_first = mt_arena_int(f->work, (size_t)m->n_links);
+    f->link_of = mt_arena_int(f->work, (size_t)f->sys->n_bodies);
+    MT_TRY(mt_arena_check(f->work, err));
+    MT_TRY(find_numbers(f, number, err));
+    MT_TRY(mt_program_eval(&f->sys->program, a->at, value, NULL, err));
+    for (int b = 0; b < f->sys->n_bodies; b++) {
+        const mt_vec_def *const centre = &f->sys->vecs[f->sys->bodies[b].centre];
+        drawn[b] = mt_pose_ground();
+        for (int k = 0; k < 3; k++) {
+            drawn[b].x[k] = value[centre->node[k]];
+        }
+    }
+    f->number = number;
+    f->value = value;
+    f->drawn = drawn;
+    f->pose = drawn;
+    number_bodies(f);
+    return MT_OK;
+}
+
 /* Position at rest and modes by full matrices. */
 static mt_status by_analysis(mt_scene_frame *f, mt_analysis *a, mt_err *err)
 {
     f->sys = a->sys;
-    MT_TRY(mt_scene_frame_new(f, err));
+    MT_TRY(set_frame(f, err));
     f->pose = mt_linear_position(a->lin)->at.pose;
     MT_TRY(draw(f, err));
     int shown = shown_of(&a->modes);
@@ -717,7 +811,7 @@ static mt_status by_lowest(mt_scene_frame *f, mt_lowest *l, mt_err *err)
 {
     const mt_modes *const m = &l->found.modes;
     f->sys = l->sys;
-    MT_TRY(mt_scene_frame_new(f, err));
+    MT_TRY(set_frame(f, err));
     MT_TRY(draw(f, err));
     const int shown = shown_of(m);
     double *const phi = mt_arena_f64(f->work, (size_t)f->sys->nq, (size_t)shown);
@@ -729,11 +823,11 @@ static mt_status by_lowest(mt_scene_frame *f, mt_lowest *l, mt_err *err)
 /* The drawing alone, of what cannot be analysed. Failing that, nothing. */
 static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
 {
-    const mt_system_def def = mt_scene_system(f, NULL, f->ask->at);
+    const mt_system_def def = system_of(f, NULL, f->ask->at);
     mt_system *sys = NULL;
     mt_status rc = mt_system_new_of(&def, &sys, err);
     f->sys = sys;
-    rc = rc == MT_OK ? mt_scene_frame_new(f, err) : rc;
+    rc = rc == MT_OK ? set_frame(f, err) : rc;
     rc = rc == MT_OK ? draw(f, err) : rc;
     mt_system_delete(sys);
     return rc;
@@ -746,7 +840,7 @@ static mt_status analyse(const mt_scene_frame *f, mt_err *err)
 {
     const mt_scene_query *const a = f->ask;
     mt_scene_known *const known = f->known;
-    if (known->by != NULL && mt_scene_same_inputs(known->ask, a)) {
+    if (known->by != NULL && same_inputs(known->ask, a)) {
         mt_analysis_options opt = mt_analysis_options_default();
         mt_err why = {.code = MT_OK};
         opt.modes.first = MT_SCENE_MODES;
@@ -759,7 +853,7 @@ static mt_status analyse(const mt_scene_frame *f, mt_err *err)
     mt_analysis_delete(known->by);
     known->by = NULL;
     known->ask = a;
-    const mt_system_def def = mt_scene_system(f, NULL, a->at);
+    const mt_system_def def = system_of(f, NULL, a->at);
     return mt_analysis_new_of(&def, MT_SCENE_MODES, &known->by, err);
 }
 
@@ -772,7 +866,7 @@ static mt_status analyse_frame(mt_scene_frame *f, scene_room *left, mt_err *err)
     mt_lowest *l = NULL;
     mt_status rc = MT_OK;
     if (bodies >= MT_LOWEST_BODIES) {
-        const mt_system_def def = mt_scene_system(f, NULL, a->at);
+        const mt_system_def def = system_of(f, NULL, a->at);
         rc = mt_lowest_new(&def, want, &l, err);
     }
     if (rc == MT_OK && l != NULL && l->way != MT_LOWEST_NONE) {
