@@ -2,7 +2,6 @@
 #ifndef NLP_LOCAL_H
 #define NLP_LOCAL_H
 
-#include "base/workers.h"
 #include "nlp/engine.h"
 
 /* One local search and its end. */
@@ -32,10 +31,6 @@ void mt_nlp_local_approach(mt_nlp_engine *e, mt_nlp_local *s);
 void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s);
 /* Both, for the objective under the constraints, with rows[n_rows] as the equalities. */
 void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s);
-/* Write or read the state of a search. Values and slopes are evaluated
- * again at the designs that are read, and the record is accepted only where they equal those it
- * was written with. False: refused, and s is unchanged. */
-bool mt_nlp_local_serialize(mt_nlp_engine *e, mt_nlp_local *s, mt_serializer *serializer);
 /* True where p is near enough to feasible for Newton's method before a restoration. */
 bool mt_nlp_nearly_feasible(const mt_nlp_point *p);
 /* The point that represents the search: `last` where it is unfinished and nearly feasible, else

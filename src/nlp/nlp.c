@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Searches of a smooth problem: where they begin, local solves from there, then judgement. */
+/* Searches of a smooth problem: where they begin, local solves from there with their records,
+ * the list of their ends, then judgement. */
 #include "nlp/nlp.h"
 
 #include <nlopt.h>
@@ -119,10 +120,184 @@ double *mt_nlp_starts(const mt_nlp *nlp, unsigned long seed, int starts, mt_aren
 }
 
 /*
+ * The ends of local searches as a list. Many starts end at few designs, and the approach
+ * (local.c) tells them apart already: Newton, most of the cost of a search, need be done
+ * once for each. The most stationary end of a neighbourhood stands for it; where Newton did not
+ * come to rest from there, the next one has its turn.
+ */
+
+/* An end lower than another by more, relatively, is not the same: more than tolerances buy. */
+static const double LOWER = 1e-5;
+/* So many ends of a neighbourhood are polished before it is given up. */
+enum { TRIES = 2 };
+
+/* Add capacity for n more ends. False: no memory. */
+static bool grow_pool(mt_nlp_engine *e, mt_nlp_solution_pool *all, int n)
+{
+    const size_t wanted = (size_t)all->count + (size_t)n;
+    mt_nlp_local *const at = mt_arena_alloc(&e->scratch, wanted, sizeof *at);
+    for (int i = 0; i < all->count && at != NULL; i++) {
+        at[i] = all->at[i];
+    }
+    all->at = at != NULL ? at : all->at;
+    return at != NULL;
+}
+
+/* Largest difference of two designs orthogonal to the directions; d[n] is work. */
+static double apart(int n, const double *a, const double *b, const mt_nlp_result *directions,
+                    double *d)
+{
+    for (int j = 0; j < n; j++) {
+        d[j] = a[j] - b[j];
+    }
+    for (int k = 0; k < directions->n_unidentifiable; k++) {
+        const double *const u = directions->unidentifiable + (ptrdiff_t)k * n;
+        mt_axpy(n, -mt_dot(n, u, d), u, d);
+    }
+    return mt_max_abs(n, d);
+}
+
+/* True where Newton from b, which is not polished, is expected to end at the same point as from
+ * a. */
+static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_local *b,
+                  const mt_nlp_result *directions, double *d)
+{
+    const mt_nlp_point *const pa = mt_nlp_local_stand(a);
+    const mt_nlp_point *const pb = mt_nlp_local_stand(b);
+    if (mt_nlp_feasible(pb) &&
+        (!mt_nlp_nearly_feasible(pa) || pb->f < pa->f - LOWER * fabs(pa->f))) {
+        return false;
+    }
+    return apart(e->n, a->from, b->from, directions, d) <= MT_SAME_DESIGN ||
+           (a->polished && apart(e->n, pa->t, b->from, directions, d) <= MT_SAME_DESIGN);
+}
+
+/* Number of feasible ends; *places: number of distinct ones. */
+static int count_places(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *places)
+{
+    static const mt_nlp_result none = {.n_unidentifiable = 0};
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    double *const d = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    int n = 0;
+    *places = 0;
+    if (!mt_nlp_has_room(e, &e->scratch)) {
+        return 0;
+    }
+    for (int i = 0; i < all->count; i++) {
+        const bool met = mt_nlp_feasible(mt_nlp_local_stand(&all->at[i]));
+        bool known = false;
+        for (int k = 0; k < i && met && !known; k++) {
+            known = alike(e, &all->at[k], &all->at[i], &none, d) &&
+                    alike(e, &all->at[i], &all->at[k], &none, d);
+        }
+        n += met ? 1 : 0;
+        *places += met && !known ? 1 : 0;
+    }
+    mt_arena_rewind(&e->scratch, mark);
+    return n;
+}
+
+/*
+ * True where a further end is unlikely. From n feasible ends in w places the expected number of
+ * places is w (n - 1)/(n - w - 2), with a uniform prior of that number (Boender and Rinnooy
+ * Kan, Math. Prog. 37, 1987, eq. 9); true where this is less than w + 1/2. One place needs
+ * eight ends, two need seventeen.
+ */
+static bool is_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *all)
+{
+    int w = 0;
+    const int n = count_places(e, all, &w);
+    return w > 0 && n > w + 2 && 2.0 * w * (n - 1) < ((2.0 * w) + 1.0) * (n - w - 2);
+}
+
+/* True where all ends are as good as the first. */
+static bool are_equally_good(const mt_nlp_solution_pool *all)
+{
+    bool equal = all->count > 0;
+    const double f = all->count > 0 ? mt_nlp_local_stand(&all->at[0])->f : nan("");
+    for (int i = 0; i < all->count && equal; i++) {
+        equal = fabs(mt_nlp_local_stand(&all->at[i])->f - f) <= LOWER * fabs(f);
+    }
+    return equal;
+}
+
+/* True where all starts so far lead to one feasible design. */
+static bool all_agree(mt_nlp_engine *e, const mt_nlp_solution_pool *all)
+{
+    int places = 0;
+    return count_places(e, all, &places) == all->starts &&
+           (places == 1 || (e->opt.any_best && are_equally_good(all)));
+}
+
+/* True where the end is at one that converged, or where Newton failed repeatedly: it does not
+ * count as another end. */
+static bool is_known_end(const mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_nlp_local *one,
+                         const mt_nlp_result *directions, double *d)
+{
+    int tries = 0;
+    for (int k = 0; k < all->count && !one->polished; k++) {
+        mt_nlp_local *const known = &all->at[k];
+        if (known->polished && alike(e, known, one, directions, d)) {
+            tries++;
+            if (mt_nlp_came_to_rest(known) || tries == TRIES) {
+                known->hits += one->hits;
+                known->start = one->start < known->start ? one->start : known->start;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* Ends to polish next, chosen[all->count], one of each neighbourhood; ends at one that is
+ * already polished are dropped. Returns their number. */
+static int choose_next(mt_nlp_engine *e, mt_nlp_solution_pool *all,
+                       const mt_nlp_result *directions, mt_nlp_local **chosen)
+{
+    double *const d = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    int left = 0;
+    int n = 0;
+    if (!mt_nlp_has_room(e, &e->scratch)) {
+        return 0;
+    }
+    for (int i = 0; i < all->count; i++) {
+        all->at[i].hits =
+            is_known_end(e, all, &all->at[i], directions, d) ? 0 : all->at[i].hits;
+    }
+    for (int i = 0; i < all->count; i++) {
+        if (all->at[i].hits > 0) {
+            all->at[left++] = all->at[i];
+        }
+    }
+    all->count = left;
+    for (int i = 0; i < all->count; i++) { /* by insertion, the most stationary first */
+        mt_nlp_local *const one = &all->at[i];
+        int at = one->polished ? -1 : n++;
+        for (; at > 0 && one->kkt < chosen[at - 1]->kkt; at--) {
+            chosen[at] = chosen[at - 1];
+        }
+        if (at >= 0) {
+            chosen[at] = one;
+        }
+    }
+    int kept = 0;
+    for (int i = 0; i < n; i++) {
+        bool near = false;
+        for (int k = 0; k < kept && !near; k++) {
+            near = alike(e, chosen[k], chosen[i], directions, d);
+        }
+        if (!near) {
+            chosen[kept++] = chosen[i];
+        }
+    }
+    return kept;
+}
+
+/*
  * The search: local solves from many starts, then judgement.
  *
  *     every start:  the approach of a local search (local.c)
- *     ends:         one of each neighbourhood is polished to full accuracy (solution_pool.c)
+ *     ends:         one of each neighbourhood is polished to full accuracy
  *     judgement:    feasible ones only, if any; undetermined directions at the best, all ends
  *                   pulled back along them; equal ones merged; ranked; multipliers, KKT,
  *                   singularity
@@ -264,6 +439,116 @@ static void note_steps(const start_job *job, long before)
     }
 }
 
+/*
+ * A local search as a record: the designs where it stands, and what it knows about them.
+ * Values and slopes there are evaluated anew.
+ */
+
+/* Writes or reads the values that do not follow from the design alone, and those that check the
+ * others. */
+static void serialize_point(const mt_nlp_engine *e, mt_nlp_point *p, mt_serializer *serializer)
+{
+    mt_serializer_numbers(serializer, (size_t)e->n, p->t);
+    mt_serializer_numbers(serializer, 1, &p->f);
+    mt_serializer_numbers(serializer, 1, &p->violation);
+    mt_serializer_numbers(serializer, 1, &p->squares);
+    mt_serializer_numbers(serializer, 1, &p->kkt);
+    mt_serializer_int(serializer, &p->n_loose, 0, INT_MAX);
+    mt_serializer_flag(serializer, &p->isolated);
+}
+
+/* Evaluates everything else at the design of p; false where the values differ. */
+static bool evaluate_again(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *at)
+{
+    const bool same = mt_nlp_evaluate(e, p->t, true, at) && at->f == p->f &&
+                      at->violation == p->violation && at->squares == p->squares &&
+                      memcmp(at->t, p->t, (size_t)e->n * sizeof *p->t) == 0;
+    at->kkt = p->kkt;
+    at->n_loose = p->n_loose;
+    at->isolated = p->isolated;
+    return same;
+}
+
+static void serialize_state(const mt_nlp_engine *e, mt_nlp_local *s, mt_serializer *serializer)
+{
+    int stage = (int)s->stage;
+    mt_serializer_int(serializer, &stage, MT_NLP_OBJECTIVE, MT_NLP_SQUARES);
+    s->stage = (mt_nlp_stage)stage;
+    mt_serializer_int(serializer, &s->n_rows, 0, e->nlp->n_eq);
+    for (int i = 0; i < s->n_rows; i++) {
+        mt_serializer_int(serializer, &s->rows[i], 0, e->nlp->n_eq - 1);
+    }
+    mt_serializer_flag(serializer, &s->restored);
+    mt_serializer_flag(serializer, &s->abandoned);
+    mt_serializer_flag(serializer, &s->curve);
+    mt_serializer_flag(serializer, &s->polished);
+    mt_serializer_numbers(serializer, (size_t)e->n, s->from);
+    mt_serializer_numbers(serializer, 1, &s->kkt);
+}
+
+static bool read_local(mt_nlp_engine *e, mt_nlp_local *s, mt_serializer *serializer)
+{
+    mt_nlp_local got = mt_nlp_local_new(e, &e->scratch);
+    mt_nlp_point *const p = mt_nlp_point_new(e, &e->scratch);
+    mt_nlp_point *const last = mt_nlp_point_new(e, &e->scratch);
+    if (!mt_nlp_has_room(e, &e->scratch)) {
+        return false;
+    }
+    serialize_state(e, &got, serializer);
+    serialize_point(e, got.p, serializer);
+    bool same = true;
+    if (got.stage == MT_NLP_OBJECTIVE) {
+        serialize_point(e, got.last, serializer);
+        same = mt_serializer_is_read(serializer) && evaluate_again(e, got.last, last);
+    }
+    if (!same || !mt_serializer_is_read(serializer) || !evaluate_again(e, got.p, p)) {
+        return false;
+    }
+    mt_nlp_point_copy(e, s->p, p);
+    if (got.stage == MT_NLP_OBJECTIVE) {
+        mt_nlp_point_copy(e, s->last, last);
+    }
+    memcpy(s->rows, got.rows, (size_t)got.n_rows * sizeof *s->rows);
+    memcpy(s->from, got.from, (size_t)e->n * sizeof *s->from);
+    s->stage = got.stage;
+    s->n_rows = got.n_rows;
+    s->restored = got.restored;
+    s->abandoned = got.abandoned;
+    s->curve = got.curve;
+    s->polished = got.polished;
+    s->kkt = got.kkt;
+    return true;
+}
+
+/* Write or read the state of a search. Values and slopes are evaluated
+ * again at the designs that are read, and the record is accepted only where they equal those it
+ * was written with. False: refused, and s is unchanged. */
+static bool serialize_local(mt_nlp_engine *e, mt_nlp_local *s, mt_serializer *serializer)
+{
+    bool begun = s->begun;
+    mt_serializer_flag(serializer, &begun);
+    if (!serializer->reads) {
+        serialize_state(e, s, serializer);
+        serialize_point(e, s->p, serializer);
+        if (s->stage == MT_NLP_OBJECTIVE) {
+            serialize_point(e, s->last, serializer);
+        }
+        return !serializer->failed;
+    }
+    /* what is evaluated here was counted when the record was made */
+    const mt_nlp_engine before = *e;
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    e->opt.max_evals = LONG_MAX;
+    const bool same = !serializer->failed && begun == s->begun && read_local(e, s, serializer);
+    mt_arena_rewind(&e->scratch, mark);
+    e->opt.max_evals = before.opt.max_evals;
+    e->evals = before.evals;
+    e->refused = before.refused;
+    e->refused_err = before.refused_err;
+    serializer->failed = !same;
+    return same;
+}
+
 /* Writes or reads a task: its evaluations and the state of its local search. */
 static void serialize_task(void *context, int k, mt_serializer *serializer)
 {
@@ -283,7 +568,7 @@ static void serialize_task(void *context, int k, mt_serializer *serializer)
     got.steps = serializer->reads ? mt_steps_new(MT_STEPS_OF_TASK, mem) : slot->steps;
     serializer->failed = serializer->failed || got.steps.at == NULL;
     mt_steps_serialize(&got.steps, serializer);
-    if (!mt_nlp_local_serialize(job->e, job->at[k], serializer) || !serializer->reads) {
+    if (!serialize_local(job->e, job->at[k], serializer) || !serializer->reads) {
         return;
     }
     got.stop = (mt_stop)stop;
@@ -365,8 +650,8 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int n, mt_st
     double *const t = mt_nlp_starts(e->nlp, e->opt.seed, all->starts + n, mem);
     job.slots = new_slots(n, mem);
     job.at = mt_arena_alloc(mem, (size_t)n, sizeof(mt_nlp_local *));
-    mt_nlp_solution_pool_grow(e, all, n);
-    if (!mt_nlp_has_room(e, mem)) {
+    const bool grown = grow_pool(e, all, n);
+    if (!mt_nlp_has_room(e, mem) || !grown) {
         return false;
     }
     mt_nlp_local *const first = all->at + all->count;
@@ -435,7 +720,7 @@ static void finish_pool(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *s
                 return;
             }
         }
-        n = mt_nlp_solution_pool_choose(e, all, out, chosen);
+        n = choose_next(e, all, out, chosen);
     }
 }
 
@@ -450,9 +735,8 @@ static bool make_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int first, 
         const int batch = agree > 0 ? agree : e->opt.settles ? each : left;
         const int now = batch < left ? batch : left;
         more = add_starts(e, all, now, steps);
-        const bool enough = e->impossible ||
-                            (agree > 0 && mt_nlp_solution_pool_agree(e, all)) ||
-                            (e->opt.settles && more && mt_nlp_solution_pool_settled(e, all));
+        const bool enough = e->impossible || (agree > 0 && all_agree(e, all)) ||
+                            (e->opt.settles && more && is_settled(e, all));
         left = enough ? 0 : left - now;
     }
     return more;

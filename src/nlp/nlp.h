@@ -78,7 +78,7 @@ typedef struct mt_nlp_options {
      * many, until every root was met twice */
     int starts;
     int skip; /* number of first starts already made by the caller; less than starts */
-    /* starts end when mt_nlp_solution_pool_settled expects no further solution */
+    /* starts end when no further solution is expected (is_settled in nlp.c) */
     bool settles;
     /* starts end when the first `agree` of them all reach one feasible design; 0: never */
     int agree;
