@@ -100,6 +100,23 @@ static bool is_of(const mt_catalogue_search_proofs *s, int slot, const double *l
     return true;
 }
 
+/* Restrict variables with a catalogue to its values instead of the interval it spans. Arrays in
+ * mem. */
+static mt_status use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
+                                mt_err *err)
+{
+    int *const count = mt_arena_int(mem, (size_t)p->n);
+    const double **const values = mt_arena_alloc(mem, (size_t)p->n, sizeof(double *));
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < p->n; i++) {
+        count[i] = p->study->variables[i].n_catalogue;
+        values[i] = p->study->variables[i].catalogue;
+    }
+    proof->question.n_catalogue = count;
+    proof->question.catalogue = values;
+    return MT_OK;
+}
+
 static mt_status make_geometry_proof(mt_catalogue_search_proofs *s, int slot,
                                      const double *lower, mt_err *err)
 {
@@ -115,7 +132,7 @@ static mt_status make_geometry_proof(mt_catalogue_search_proofs *s, int slot,
         held.upper[i] = lower[i];
     }
     MT_TRY(mt_proof_init(proof, &held, mem, err));
-    return mt_proof_use_catalogues(proof, s->c->p, mem, err);
+    return use_catalogues(proof, s->c->p, mem, err);
 }
 
 /* The proof with its bounds set to lower <= x <= upper [n], valid until the next call; NULL:

@@ -493,21 +493,6 @@ mt_status mt_drive_path_follow(mt_workspace *ws, int drive_positions, const int 
     return follow_drive_path(&w, f, below, err);
 }
 
-mt_status mt_drive_path_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
-                             long *positions, mt_err *err)
-{
-    *kept = true;
-    for (int i = 0; i < ws->p->n_families && *kept; i++) {
-        mt_drive_path m = {.room = 0.0};
-        if (ws->p->families[i].banded) {
-            MT_TRY(mt_drive_path_follow(ws, i, below, mem, &m, err));
-            *positions += m.positions;
-            *kept = m.end != MT_MOTION_UNSTABLE && m.room >= -m.tolerance;
-        }
-    }
-    return MT_OK;
-}
-
 /*
  * The cubic through a, b with slopes a', b' at the part u of an interval of length h is
  *     (1 + 2 u)(1 - u)^2 a + u (1 - u)^2 h a' + u^2 (3 - 2 u) b - u^2 (1 - u) h b'.

@@ -66,11 +66,6 @@ mt_status mt_drive_path_follow(mt_workspace *ws, int drive_positions, const int 
  * limit. */
 long mt_drive_path_most(const mt_subproblem *c);
 
-/* *kept: over all drives the design stays outside its bands, within their tolerance, and is
- * stable. *positions is increased by the number of samples. Fails: as mt_drive_path_follow. */
-mt_status mt_drive_path_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
-                             long *positions, mt_err *err);
-
 /*
  * Signs, at two positions of a drive, that a goal's value may differ between them: c = ln f of
  * modes relative to the frequencies where the value has its steps (the ends of a goal's range,

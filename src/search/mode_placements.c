@@ -79,33 +79,6 @@ static mt_status mode_placement_copy_held(mt_arena *mem, mt_mode_placement_solut
     return MT_OK;
 }
 
-mt_status mt_mode_placement_hold(const mt_subproblem *c, const mt_cut *cuts,
-                                 const mt_nlp_solution *s, mt_arena *mem,
-                                 mt_mode_placement_solution *out, mt_err *err)
-{
-    const mt_row_span bands = c->rows.of_kind[MT_ROW_BAND];
-    mt_mode_placement_held *const held = mt_arena_alloc(mem, (size_t)bands.n, sizeof *held);
-    MT_TRY(mt_arena_check(mem, err));
-    out->held = held;
-    out->n_held = 0;
-    for (int i = bands.first; i < bands.first + bands.n && s->mult_in != NULL; i++) {
-        const mt_row *const row = &c->rows.in.rows[i];
-        /* cuts come behind the problem's own */
-        const int k = row->avoidance - c->p->n_avoidances;
-        const double multiplier = s->mult_in[i];
-        if (k >= 0 && multiplier > 0.0) {
-            held[out->n_held++] = (mt_mode_placement_held){
-                .drive_positions = cuts[k].drive_positions,
-                .position = cuts[k].position,
-                .mode = row->mode,
-                .above = row->sense == MT_AT_LEAST,
-                .band = c->avoidances[row->avoidance].bands.items[row->band].label,
-                .multiplier = multiplier};
-        }
-    }
-    return MT_OK;
-}
-
 /*
  * Which gap assignments are worth a search, first and in all. Where the modes can be
  * enclosed (proof.h), branch and bound over the bounds finds every assignment that some

@@ -83,11 +83,6 @@ typedef struct mt_mode_placement_incumbent {
 mt_status mt_mode_placements_solve(mt_workspace *const *workers, int n_workers,
                                    const mt_mode_placement_incumbent *incumbent, mt_arena *mem,
                                    mt_mode_placement_result *out, mt_err *err);
-/* out->held: the rows with a nonzero multiplier, in a solution of subproblem c, of cuts that
- * its problem does not have. In mem. Fails: MT_E_MEMORY. */
-mt_status mt_mode_placement_hold(const mt_subproblem *c, const struct mt_cut *cuts,
-                                 const mt_nlp_solution *s, mt_arena *mem,
-                                 mt_mode_placement_solution *out, mt_err *err);
 /* Where the objective is the least clearance: designs met by a search, and those it ended at,
  * count a negative clearance as a violation. */
 void mt_mode_placement_refuse_step(const mt_subproblem *c, mt_step *s);

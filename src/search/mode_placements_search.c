@@ -213,6 +213,51 @@ static bool has_round(const mt_mode_placement_job *j, long evals)
     return most <= 0 || most - evals >= mt_mode_placement_verdict(j->c) + MT_GAP_SEARCH_LEAST;
 }
 
+/* *out: first[n], then the cuts, which keep their memory, for mt_subproblem_lay_out. Fails:
+ * MT_E_MEMORY. */
+static mt_status join_cuts(const mt_at_position_cuts *cuts, int n, const mt_cut *first,
+                           mt_arena *mem, mt_cut **out, mt_err *err)
+{
+    *out = mt_arena_alloc(mem, (size_t)n + (size_t)cuts->n, sizeof **out);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n; i++) {
+        (*out)[i] = first[i];
+    }
+    for (int i = 0; i < cuts->n; i++) {
+        (*out)[n + i] = cuts->items[i];
+    }
+    return MT_OK;
+}
+
+/* out->held: the rows with a nonzero multiplier, in a solution of subproblem c, of cuts that
+ * its problem does not have. In mem. Fails: MT_E_MEMORY. */
+static mt_status hold_active_limits(const mt_subproblem *c, const mt_cut *cuts,
+                                    const mt_nlp_solution *s, mt_arena *mem,
+                                    mt_mode_placement_solution *out, mt_err *err)
+{
+    const mt_row_span bands = c->rows.of_kind[MT_ROW_BAND];
+    mt_mode_placement_held *const held = mt_arena_alloc(mem, (size_t)bands.n, sizeof *held);
+    MT_TRY(mt_arena_check(mem, err));
+    out->held = held;
+    out->n_held = 0;
+    for (int i = bands.first; i < bands.first + bands.n && s->mult_in != NULL; i++) {
+        const mt_row *const row = &c->rows.in.rows[i];
+        /* cuts come behind the problem's own */
+        const int k = row->avoidance - c->p->n_avoidances;
+        const double multiplier = s->mult_in[i];
+        if (k >= 0 && multiplier > 0.0) {
+            held[out->n_held++] = (mt_mode_placement_held){
+                .drive_positions = cuts[k].drive_positions,
+                .position = cuts[k].position,
+                .mode = row->mode,
+                .above = row->sense == MT_AT_LEAST,
+                .band = c->avoidances[row->avoidance].bands.items[row->band].label,
+                .multiplier = multiplier};
+        }
+    }
+    return MT_OK;
+}
+
 /* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut
  * was added. */
 static mt_status search_round(const mt_mode_placement_job *j, mt_workspace *w,
@@ -233,7 +278,7 @@ static mt_status search_round(const mt_mode_placement_job *j, mt_workspace *w,
         held.search.max_evaluations = options.max_evals;
     }
     mt_cut *cuts = NULL;
-    MT_TRY(mt_at_position_cuts_used(&s->at_position, s->n_cuts, s->cuts, &s->mem, &cuts, why));
+    MT_TRY(join_cuts(&s->at_position, s->n_cuts, s->cuts, &s->mem, &cuts, why));
     MT_TRY(mt_subproblem_in_placement(&held, below, s->n_cuts + s->at_position.n, cuts, w,
                                       &s->mem, &c, why));
     options.starts =
@@ -265,8 +310,7 @@ static mt_status search_round(const mt_mode_placement_job *j, mt_workspace *w,
     s->evals += mt_subproblem_counted(&c, s->found.evals);
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0) {
-        rc =
-            mt_mode_placement_hold(&c, s->cuts, &s->found.solutions[0], &s->mem, &s->held, why);
+        rc = hold_active_limits(&c, s->cuts, &s->found.solutions[0], &s->mem, &s->held, why);
     }
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.stop != MT_STOP_USER) {
         const long judged = s->evals + mt_mode_placement_verdict(j->c); /* at most */

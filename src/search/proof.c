@@ -233,21 +233,6 @@ mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, 
     return MT_OK;
 }
 
-mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
-                                  mt_err *err)
-{
-    int *const count = mt_arena_int(mem, (size_t)p->n);
-    const double **const values = mt_arena_alloc(mem, (size_t)p->n, sizeof(double *));
-    MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < p->n; i++) {
-        count[i] = p->study->variables[i].n_catalogue;
-        values[i] = p->study->variables[i].catalogue;
-    }
-    proof->question.n_catalogue = count;
-    proof->question.catalogue = values;
-    return MT_OK;
-}
-
 /* That no design meets the goals. */
 
 /* Multiplications of branch and bound: a millisecond, or a box. */

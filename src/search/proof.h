@@ -42,10 +42,6 @@ mt_status mt_proof_query(mt_proof *proof, double most, mt_arena *mem, mt_certify
                          mt_err *err);
 /* Accepts a zeroed proof. */
 void mt_proof_free(mt_proof *proof);
-/* Restrict variables with a catalogue to its values instead of the interval it spans. Arrays in
- * mem. */
-mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
-                                  mt_err *err);
 
 /* The first objective as a cap for proofs; `known` false where it has no bounds (a
  * misfit, a clearance). p must outlive it. */

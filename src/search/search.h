@@ -64,11 +64,6 @@ bool mt_search_has_positions(const mt_subproblem *c);
  * Fails: as an evaluation, as mt_drive_path_limit. */
 mt_status mt_search_verify_positions(mt_workspace *w, const double *t, bool last, mt_arena *mem,
                                      mt_at_position_cuts *cuts, mt_err *err);
-/* *out: first[n], then the cuts, which keep their memory, for mt_subproblem_lay_out. Fails:
- * MT_E_MEMORY. */
-mt_status mt_at_position_cuts_used(const mt_at_position_cuts *cuts, int n,
-                                   const struct mt_cut *first, mt_arena *mem,
-                                   struct mt_cut **out, mt_err *err);
 void mt_at_position_cuts_free(mt_at_position_cuts *cuts);
 /* All stages of one search of ws's subproblem from the design `from` alone.
  * out->solutions[0] is its result, if any. */

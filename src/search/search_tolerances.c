@@ -101,20 +101,6 @@ mt_status mt_search_verify_positions(mt_workspace *w, const double *t, bool last
     return MT_OK;
 }
 
-mt_status mt_at_position_cuts_used(const mt_at_position_cuts *cuts, int n, const mt_cut *first,
-                                   mt_arena *mem, mt_cut **out, mt_err *err)
-{
-    *out = mt_arena_alloc(mem, (size_t)n + (size_t)cuts->n, sizeof **out);
-    MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < n; i++) {
-        (*out)[i] = first[i];
-    }
-    for (int i = 0; i < cuts->n; i++) {
-        (*out)[n + i] = cuts->items[i];
-    }
-    return MT_OK;
-}
-
 void mt_at_position_cuts_free(mt_at_position_cuts *cuts)
 {
     for (int i = 0; i < cuts->n; i++) {
