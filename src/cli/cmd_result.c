@@ -12,16 +12,20 @@
 #include "result/diff.h"
 
 /* The recommendation of --rank. Fails: MT_E_USAGE. */
-static mt_status find_recommendation(const mt_args *args, const mt_result *result,
-                                     const mt_recommendation **out, mt_err *err)
+/* NULL: there is none of that rank. */
+static const mt_recommendation *find_recommendation(const mt_result *result, int rank)
 {
-    const int n = result->n_recommendations;
-    for (int i = 0; i < n; i++) {
-        if (result->recommendations[i].rank == args->rank) {
-            *out = &result->recommendations[i];
-            return MT_OK;
+    for (int i = 0; i < result->n_recommendations; i++) {
+        if (result->recommendations[i].rank == rank) {
+            return &result->recommendations[i];
         }
     }
+    return NULL;
+}
+
+static mt_status fail_without_rank(const mt_args *args, const mt_result *result, mt_err *err)
+{
+    const int n = result->n_recommendations;
     return mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d",
                    args->operands[0], n, n == 1 ? "" : "s", args->rank);
 }
@@ -47,7 +51,8 @@ static mt_status choose_explained_design(const mt_args *args, const mt_result *r
         *out = &result->baseline;
         return MT_OK;
     }
-    return find_recommendation(args, result, out, err);
+    *out = find_recommendation(result, args->rank);
+    return *out != NULL ? MT_OK : fail_without_rank(args, result, err);
 }
 
 static int print(const mt_args *args, const mt_result *result, mt_text *out)
@@ -212,10 +217,12 @@ static mt_status apply_recommendation(const mt_args *args, const mt_result *resu
                                       mt_text *out, mt_err *err)
 {
     const char *const path = args->operands[0];
-    const mt_recommendation *chosen = NULL;
+    const mt_recommendation *const chosen = find_recommendation(result, args->rank);
     mt_file file = {.bytes = NULL};
     char *model_path = NULL;
-    MT_TRY(find_recommendation(args, result, &chosen, err));
+    if (chosen == NULL) {
+        return fail_without_rank(args, result, err);
+    }
     mt_status rc = mt_find_model(args, result, &file, &model_path, err);
     if (rc == MT_OK) {
         rc = substitute(chosen, &result->run, &file, model_path, out, err);
