@@ -11,8 +11,7 @@
 #include "report/table.h"
 #include "result/diff.h"
 
-/* The recommendation of --rank. Fails: MT_E_USAGE. */
-/* NULL: there is none of that rank. */
+/* The recommendation of a rank; NULL: there is none. */
 static const mt_recommendation *find_recommendation(const mt_result *result, int rank)
 {
     for (int i = 0; i < result->n_recommendations; i++) {

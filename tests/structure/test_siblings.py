@@ -7,9 +7,9 @@ from pathlib import Path
 from common import ROOMS, ROOT, c_files, verdict
 from test_symbols import BUILD, exported_names, functions, objects_of
 
-MOST_FOR_ONE = 310
+MOST_FOR_ONE = 253
 SHORT = 150  # lines
-MOST_SHORT = 12
+MOST_SHORT = 9
 
 
 def for_one_sibling(table, exported):
