@@ -238,12 +238,12 @@ class Page:
         out += [f"names match `{names['pattern']}`"] if "pattern" in names else ["names not empty"] if names else []
         return out
 
-    def entry(self, form, required, member, schema, kind):
+    def entry(self, form, mark, member, schema, kind):
         inner = form.resolve(schema)[0]
         text = schema.get("description", inner.get("description", "")) if "$ref" not in schema else inner["description"]
         unit = unit_of(member, text) if any(w in self.words(kind) for w in ("number", "vector", "pair", "breakpoints")) else None
         notes = [self.words(kind) + (f", {unit}" if unit else "")]
-        notes += ["required"] if required else []
+        notes += [mark] if mark is not None else []
         own = inner if not ("$ref" in schema and schema["$ref"].rpartition("/")[2] in form.values) else {}
         notes += self.limits(own) if "properties" not in inner else []
         text += examples(own) if "properties" not in inner else ""
@@ -268,8 +268,11 @@ class Page:
         schema = section["schema"]
         text = [schema["description"]] if "description" in schema else []
         places = [p for p in section["places"] if p]
-        everything = set(schema.get("required", [])) == set(schema["properties"])
-        said = "Every member is always there." if form.name in ("result", "index", "progress", "scene") else "Every member is required."
+        written = form.name in ("result", "index", "progress", "scene")
+        later = set(schema["properties"]) - set(schema.get("required", [])) if written else set()
+        everything = written or set(schema.get("required", [])) == set(schema["properties"])
+        said = "Every member is required." if not written else "Every member is always there." if not later else \
+            "Every member is always there, but files that older programs wrote may lack those marked as later."
         text += [said] if everything and len(schema["properties"]) > 1 and not any("Every member is" in t for t in text) else []
         text += self.together(schema)
         text += [examples(schema).strip()] if "examples" in schema else []
@@ -279,7 +282,8 @@ class Page:
             lines += [filled("Place: " + ", ".join(f"`{p}`" for p in places[:4]) + more), ""]
         if text:
             lines += [filled(" ".join(text)), ""]
-        lines += [self.entry(form, m in schema.get("required", []) and not everything, m, s, kind) for m, s, kind in section["entries"]]
+        lines += [self.entry(form, "later" if m in later else "required" if m in schema.get("required", []) and not everything else None, m, s, kind)
+                  for m, s, kind in section["entries"]]
         if section["kinds"]:
             kinds = ", ".join(f"[`{kind}`](#{self.anchors[id(s)]})" for kind, s in section["kinds"])
             lines += ["", filled(f"The type decides which other members there are: {kinds}.")]

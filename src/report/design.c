@@ -1089,12 +1089,15 @@ static void write_reasons(const mt_summary_writer *to, const mt_recommendation *
     } parts[] = {{"change", "Why: what changes"},
                  {"hold", "Why: what holds it"},
                  {"cost", "Why: what it costs"},
-                 {"rank", "Why: how it stands"}};
+                 {"rank", "Why: how it stands"},
+                 {NULL, "Why"}}; /* of an older program */
     mt_text_add(to->out, to->html && r->n_reasons > 0 ? "<div class=\"parts\">\n" : "");
     for (int k = 0; k < MT_COUNT(parts); k++) {
         bool open = false;
         for (int i = 0; i < r->n_reasons; i++) {
-            if (strcmp(r->reasons[i].kind, parts[k].kind) == 0) {
+            const char *const own = r->reasons[i].kind;
+            if (own == NULL ? parts[k].kind == NULL
+                            : parts[k].kind != NULL && strcmp(own, parts[k].kind) == 0) {
                 mt_text_add(to->out, to->html && !open ? "<div>" : "");
                 open = open || mt_section_open(to, parts[k].title, 1);
                 mt_section_item(to, "", r->reasons[i].text);

@@ -169,8 +169,15 @@ mt_table mt_report_movers(const mt_recommendation *r)
     return t;
 }
 
+/* True of a design that an older program wrote, whose reasons are of no kind and whose goals
+ * tell no slopes. */
+static bool is_older(const mt_recommendation *r)
+{
+    return r->n_reasons > 0 && r->reasons[0].kind == NULL;
+}
+
 /* Add "met" or "missed by 2.1 %", and that sensitivities are not available. */
-static void add_goal_line(const mt_result_goal *g, mt_text *out)
+static void add_goal_line(const mt_result_goal *g, bool older, mt_text *out)
 {
     char number[MT_NUMBER_TEXT];
     const char *const unit = g->display_unit != NULL ? g->display_unit : g->unit;
@@ -188,19 +195,21 @@ static void add_goal_line(const mt_result_goal *g, mt_text *out)
     } else {
         mt_text_add(out, "not met");
     }
-    if (g->sensitivity == NULL && strcmp(g->type, "avoid") != 0) {
+    if (g->sensitivity == NULL && !older && strcmp(g->type, "avoid") != 0) {
         mt_text_add(out, "; no sensitivity (the mode is repeated, or the value is a distance)");
     }
     mt_text_add(out, "\n");
 }
 
+/* kind NULL: those without. */
 static void add_reasons(const mt_recommendation *r, const char *kind, const char *title,
                         const char *none, mt_text *out)
 {
     int n = 0;
     mt_text_addf(out, "\n%s\n", title);
     for (int i = 0; i < r->n_reasons; i++) {
-        if (strcmp(r->reasons[i].kind, kind) == 0) {
+        const char *const own = r->reasons[i].kind;
+        if (own == NULL ? kind == NULL : kind != NULL && strcmp(own, kind) == 0) {
             mt_text_addf(out, "  - %s\n", r->reasons[i].text);
             n++;
         }
@@ -249,13 +258,18 @@ void mt_report_explain(const mt_result *result, const mt_recommendation *r, int 
     }
     mt_text_add(out, "\nGoals\n");
     for (int i = 0; i < r->n_goals; i++) {
-        add_goal_line(&r->goals[i], out);
+        add_goal_line(&r->goals[i], is_older(r), out);
     }
     if (mt_table_rows(&t) > 0 || t.failed) {
         mt_text_add(out, "\nWhat moves each goal, the most first\n");
         mt_table_print(&t, INDENT, width, out);
     }
-    add_reasons(r, "hold", "What holds it", "nothing: no bound, band or limit is active", out);
-    add_reasons(r, "cost", "What it costs", no_price(result, r), out);
+    if (is_older(r)) {
+        add_reasons(r, NULL, "Why", "", out);
+    } else {
+        add_reasons(r, "hold", "What holds it", "nothing: no bound, band or limit is active",
+                    out);
+        add_reasons(r, "cost", "What it costs", no_price(result, r), out);
+    }
     mt_table_free(&t);
 }

@@ -211,7 +211,9 @@ void mt_report_work_counters(const mt_result_run *run, mt_text *out)
         }
     }
     mt_text_add(out, told > 0 ? ")" : "");
-    mt_text_addf(out, ", %ld modal solutions", run->modal_solutions);
+    if (run->modal_solutions >= 0) { /* an earlier program did not count them */
+        mt_text_addf(out, ", %ld modal solutions", run->modal_solutions);
+    }
     if (s->multiplications > 0) {
         char work[MT_NUMBER_TEXT];
         mt_text_addf(out, ", %s multiplications of proofs",

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A result read back, whole: every member of the tables must be there and of its type, and no
- * other. Besides, the parameters of every design are the variables, and each point of a trade
- * study has one value of each quantity that varies.
+ * A result read back, whole: every member of the tables must be there and of its type, but for
+ * those that programs of earlier days did not write, and no other. Besides, the parameters of
+ * every design are the variables, and each point of a trade study has one value of each
+ * quantity that varies.
  */
 #include "result/read.h"
 
@@ -259,6 +260,22 @@ static const mt_field *find_field(const mt_record *record, const char *name, int
     return NULL;
 }
 
+/* What stands for a member that the program that wrote the file did not know; item: cleared,
+ * with all members that the file has. */
+static void leave_out(const mt_field *f, void *item)
+{
+    void *const at = (char *)item + f->offset;
+    if (f->type == MT_FIELD_TEXT && !f->nullable) {
+        mt_record_set_pointer(at, mt_record_get_pointer((const char *)item + f->other));
+    } else if (f->type == MT_FIELD_LONG) {
+        *(long *)at = f->least - 1L;
+    } else if (f->type == MT_FIELD_RECORD) {
+        for (int i = 0; i < f->record->n; i++) {
+            leave_out(&f->record->fields[i], at);
+        }
+    }
+}
+
 static void read_members(result_reader *s, mt_addr value, const mt_record *record, void *item)
 {
     bool seen[MOST_FIELDS] = {false};
@@ -283,16 +300,35 @@ static void read_members(result_reader *s, mt_addr value, const mt_record *recor
     }
     for (int i = 0; i < record->n; i++) {
         const mt_field *const f = &record->fields[i];
-        if (f->name != NULL && f->type != MT_FIELD_FORMAT && !seen[i]) {
+        if (f->later && !seen[i]) {
+            leave_out(f, item);
+        } else if (f->name != NULL && f->type != MT_FIELD_FORMAT && !seen[i]) {
             mt_diag_structure(s->r.diags, value, "member \"%s\" is missing", f->name);
         }
     }
 }
 
+/* The text that stands in place of the record; NULL: this value is none. */
+static const mt_field *find_alone(const result_reader *s, mt_addr value,
+                                  const mt_record *record)
+{
+    for (int i = 0; i < record->n && mt_json_type_of(s->r.doc, value) == MT_JSON_STRING; i++) {
+        if (record->fields[i].alone) {
+            return &record->fields[i];
+        }
+    }
+    return NULL;
+}
+
 static void read_record(result_reader *s, mt_addr value, const mt_record *record, void *item)
 {
+    const mt_field *const alone = find_alone(s, value, record);
     mt_record_clear(record, item);
-    read_members(s, value, record, item);
+    if (alone != NULL) {
+        read_field(s, value, alone, item);
+    } else {
+        read_members(s, value, record, item);
+    }
 }
 
 /* The variables come before what is told by their names, wherever they stand; what is no text
@@ -392,9 +428,57 @@ static void check_outputs(result_reader *s, mt_addr list)
     }
 }
 
+static bool is_number(const result_reader *s, mt_addr value)
+{
+    return value != MT_NO_ADDR && mt_json_type_of(s->r.doc, value) == MT_JSON_NUMBER;
+}
+
+/* True where one of the designs tells a clearance from bands; design: the member of the items
+ * that is one; NULL: the items are. */
+static bool has_clearance(const result_reader *s, mt_addr designs, const char *design)
+{
+    for (mt_items i = mt_reader_items(&s->r, designs); mt_items_next(&i);) {
+        const mt_addr at = design == NULL ? i.at : member(s, i.at, design);
+        if (is_number(s, member(s, at, "clearance_percent"))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* False where no defaults stand for what has changed since the file was written. Up to November
+ * 22, 2026, goals were only words, without type, unit, target and limits, and designs had a
+ * "score_unit". Up to November 26 (a result had no "assumptions" then) clearances from bands
+ * were told in percent of the edge, in numbers and sentences. */
+static bool check_age(const result_reader *s)
+{
+    const mt_addr baseline = member(s, MT_JSON_ROOT, "baseline");
+    const mt_addr points = member(s, member(s, MT_JSON_ROOT, "trade"), "points");
+    const char *why = NULL;
+    if (member(s, baseline, "score_unit") != MT_NO_ADDR) {
+        why = "22, 2026, or before, which tells neither types nor limits of goals";
+    } else if (member(s, MT_JSON_ROOT, "assumptions") == MT_NO_ADDR &&
+               (has_clearance(s, member(s, MT_JSON_ROOT, "recommendations"), NULL) ||
+                has_clearance(s, points, "best") ||
+                is_number(s, member(s, baseline, "clearance_percent")))) {
+        why = "26, 2026, or before, which tells clearances from bands in percent of the edge, "
+              "not "
+              "as ratios of frequencies";
+    }
+    if (why != NULL) {
+        mt_diag_structure(s->r.diags, MT_JSON_ROOT,
+                          "written by a modetune 0.1.0 of November %s: run the study again",
+                          why);
+    }
+    return why == NULL;
+}
+
 static void read_result_root(result_reader *s)
 {
     if (!mt_record_check_format(&s->r, &mt_result_record, "result")) {
+        return;
+    }
+    if (!check_age(s)) {
         return;
     }
     list_variables(s);

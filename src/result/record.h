@@ -14,8 +14,9 @@
 /*
  * The members of a struct as a table. Writer, reader, copier and checks of results walk these
  * tables and depend on no struct, and the JSON Schema is written from them: every member that
- * has a name is required, and there are no others. A record is plain: its texts and lists lie
- * in an arena that the record does not own.
+ * has a name is written, and there are no others; required are those that files of this format
+ * have always had. A record is plain: its texts and lists lie in an arena that the record does
+ * not own.
  */
 typedef enum mt_field_type {
     MT_FIELD_FORMAT, /* a constant text, of no struct: kind and version of the file */
@@ -42,7 +43,7 @@ typedef struct mt_record mt_record;
 typedef struct mt_field {
     const char *name; /* NULL: copied, but neither written nor read */
     size_t offset;
-    size_t other;
+    size_t other; /* of a `later` text that is never NULL: the text that stands for it */
     const mt_record *record;
     const char *const *choices;
     mt_field_type type;
@@ -57,6 +58,13 @@ typedef struct mt_field {
     bool flat;             /* of a record: in one line */
     bool nullable;         /* of a list: NULL is null, else NULL is empty */
     bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
+    /* Files that older programs wrote may lack it. It is read as mt_record_clear leaves it; of
+     * a LONG that is never null as less than `least`. Such a LONG is not written, nor is a text
+     * or choice that is NULL and never null. */
+    bool later;
+    /* Of a text: older programs wrote it in place of the record that holds it, whose other
+     * members are `later` all. */
+    bool alone;
 } mt_field;
 
 struct mt_record {

@@ -5,12 +5,14 @@
 #include "study/objectives.h"
 
 /* In which unit people are shown the numbers beside it, which are in SI. */
-#define SHOWN_FIELDS                                                                       \
-    MT_F_TEXT_OR_NULL("display_unit", display_unit,                                        \
-                      "What people are shown these values in; null: in the unit itself."), \
-        MT_F_NUMBER_OR_NULL(                                                               \
-            "display_factor", display_factor,                                              \
-            "How much of the unit that is: value / display_factor is shown; null: the value.")
+#define SHOWN_FIELDS                                                                           \
+    MT_F_TEXT_OR_NULL("display_unit", display_unit,                                            \
+                      "What people are shown these values in; null: in the unit itself.",      \
+                      .later = true),                                                          \
+        MT_F_NUMBER_OR_NULL(                                                                   \
+            "display_factor", display_factor,                                                  \
+            "How much of the unit that is: value / display_factor is shown; null: the value.", \
+            .later = true)
 
 #define STATUS_NAME(id, name) name,
 static const char *const STATUSES[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
@@ -28,8 +30,10 @@ static const mt_field PARAMETER_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("change_percent", change_percent,
                         "Change relative to the original, in percent; null where that is 0."),
     MT_F_CHOICE_OR_NULL("at_bound", at_bound, BOUNDS, "Whether the value lies at a bound."),
-    MT_F_NUMBER_OR_NULL("lower", lower, "Its lower bound; of a catalogue the least entry."),
-    MT_F_NUMBER_OR_NULL("upper", upper, "Its upper bound; of a catalogue the greatest entry."),
+    MT_F_NUMBER_OR_NULL("lower", lower, "Its lower bound; of a catalogue the least entry.",
+                        .later = true),
+    MT_F_NUMBER_OR_NULL("upper", upper, "Its upper bound; of a catalogue the greatest entry.",
+                        .later = true),
     MT_F_CHOICE("measure", measure, MEASURES,
                 "How a change counts: by ln(new/original); the same, linearly below a floor; "
                 "or (new - original)/scale."),
@@ -202,7 +206,8 @@ static const char *const GOAL_TYPES[] = {MT_GOAL_LIST(GOAL_NAME)};
 #undef GOAL_NAME
 static const mt_field GOAL_FIELDS[] = {
     MT_F_TEXT("goal", text, "What is asked, in words."),
-    MT_F_TEXT("quantity", quantity, "Of these words what is limited: \"installed mode 1\"."),
+    MT_F_TEXT("quantity", quantity, "Of these words what is limited: \"installed mode 1\".",
+              .other = MT_F_MEMBER(const char *, text), .later = true),
     MT_F_TEXT("pointer", pointer, "Where the study asks it (JSON pointer)."),
     MT_F_CHOICE("type", type, GOAL_TYPES, "Kind of goal, as the study calls it."),
     MT_F_TEXT_OR_NULL("configuration", configuration,
@@ -233,14 +238,16 @@ static const mt_field GOAL_FIELDS[] = {
                              "Values of the variables where that is; null: as \"worst\"."),
     MT_F_BY_VARIABLE_OR_NULL("sensitivity", sensitivity,
                              "Slopes of the value, per unit of each variable; null: it has "
-                             "none, as a mode that repeats, or a distance."),
+                             "none, as a mode that repeats, or a distance.",
+                             .later = true),
     MT_F_NUMBER_OR_NULL("off_most_hz", off_most_hz,
                         "Of a frequency response: the measured frequency where the deviation "
-                        "is greatest [Hz]; null: it is none, or has no value."),
+                        "is greatest [Hz]; null: it is none, or has no value.",
+                        .later = true),
     MT_F_NUMBER_OR_NULL("off_most_ratio", off_most_ratio,
-                        "Its magnitude there, over the measured one."),
+                        "Its magnitude there, over the measured one.", .later = true),
     MT_F_NUMBER_OR_NULL("off_most_phase_deg", off_most_phase_deg,
-                        "Its phase there, less the measured one [deg]."),
+                        "Its phase there, less the measured one [deg].", .later = true),
     MT_F_NUMBER_OR_NULL("violation_percent", violation_percent,
                         "How far the goal is missed, in percent."),
     MT_F_FLAG("met", met, "Within the goal's tolerance."),
@@ -275,10 +282,12 @@ static const char *const REASON_KINDS[] = {"change", "hold", "cost", "rank"};
 static const mt_field REASON_FIELDS[] = {
     MT_F_CHOICE("kind", kind, REASON_KINDS,
                 "Whether it tells what changes, what holds the design, what that costs, or how "
-                "it stands among others."),
+                "it stands among others.",
+                .later = true),
     MT_F_TEXT_OR_NULL("about", about,
-                      "The parameter's name, or the goal's JSON pointer; null: neither."),
-    MT_F_TEXT("text", text, "The sentence."),
+                      "The parameter's name, or the goal's JSON pointer; null: neither.",
+                      .later = true),
+    MT_F_TEXT("text", text, "The sentence.", .alone = true),
 };
 static const mt_record REASON = MT_F_RECORD_OF(REASON_FIELDS, "reason", "One sentence of why.");
 #undef THIS
@@ -434,7 +443,8 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("mac_matrices", macs, n_macs, mt_result_mac, MAC,
               "For each reference whose shapes goals compare with those of a configuration: "
               "how much each of the first modes (those in \"frequencies\") has the shape of "
-              "each of the reference's."),
+              "each of the reference's.",
+              .later = true),
     MT_F_LIST("clearances", clearances, n_clearances, mt_result_clearance, CLEARANCE,
               "Distances of modes from forbidden bands."),
     MT_F_LIST_OR_NULL("gap_assignment", placements, n_placements, mt_result_mode_placement, GAP,
@@ -448,14 +458,17 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL, "Every goal."),
     MT_F_LIST("responses", responses, n_responses, mt_result_response, RESPONSE,
               "What the goals of types \"response\" and \"vibration\" find, one for each goal "
-              "and configuration."),
+              "and configuration.",
+              .later = true),
     MT_F_LIST("responses_between", between, n_between, mt_result_between, BETWEEN,
               "What goals that limit a number (a frequency, a damping ratio, a MAC, a forced "
               "vibration) find between the positions of one drive, one for each goal and drive "
-              "with several positions that the goal names."),
+              "with several positions that the goal names.",
+              .later = true),
     MT_F_LIST("curves", curves, n_curves, mt_design_curve, mt_design_curve_record,
               "Responses of this design, in the order of the result's; none at points of a "
-              "trade study."),
+              "trade study.",
+              .later = true),
     MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON,
               "Why this design is what it is."),
     MT_F_UNWRITTEN_TEXT(disagreement),
@@ -602,7 +615,7 @@ static const mt_field EXCITATION_FIELDS[] = {
     MT_F_NUMBER("margin_percent", margin_percent,
                 "Separation margin on both sides of its bands, in percent of their edges."),
     MT_F_NUMBER_OR_NULL("up_to_hz", up_to_hz,
-                        "Frequencies beyond it do not count; null: all do."),
+                        "Frequencies beyond it do not count; null: all do.", .later = true),
     MT_F_TEXTS("configurations", configurations, n_configurations,
                "Configurations that the goal keeps clear of it."),
     MT_F_LIST("orders", orders, n_orders, mt_result_order, ORDER, "Its lines."),
@@ -629,10 +642,12 @@ static const mt_field PUBLISHED_FIELDS[] = {
                         "The same in percent of the published value."),
     MT_F_TEXT_OR_NULL("demand", requirement, "How it is judged: \"within 0.1 %\"."),
     MT_F_TEXT_OR_NULL("display_unit", display_unit,
-                      "What people are shown a parameter's numbers in; null: in SI units."),
+                      "What people are shown a parameter's numbers in; null: in SI units.",
+                      .later = true),
     MT_F_NUMBER_OR_NULL(
         "display_factor", display_factor,
-        "How much of the SI unit that is: value / display_factor is shown; null: the value."),
+        "How much of the SI unit that is: value / display_factor is shown; null: the value.",
+        .later = true),
     MT_F_FLAG("holds", holds, "It is met."),
     MT_F_TEXT_OR_NULL("source", source, "Where it was published."),
 };
@@ -688,16 +703,19 @@ static const mt_record BUILD =
 
 #define THIS mt_result_work_counters
 static const mt_field WORK_COUNTERS_FIELDS[] = {
-    MT_F_LONG("search", search, "Looking for designs."),
+    MT_F_LONG("search", search, "Looking for designs.", .later = true),
     MT_F_LONG("positions", positions,
-              "Positions of drives between the named ones, wherever a design was followed."),
+              "Positions of drives between the named ones, wherever a design was followed.",
+              .later = true),
     MT_F_LONG("descriptions", descriptions,
-              "Repeated analyses of the original design and of those recommended."),
-    MT_F_LONG("spread", weight_sensitivity, "The best design under other weights."),
-    MT_F_LONG("relaxations", relaxations, "What would let a design exist."),
-    MT_F_LONG("trade", trade, "All points of the trade study, whatever for."),
+              "Repeated analyses of the original design and of those recommended.",
+              .later = true),
+    MT_F_LONG("spread", weight_sensitivity, "The best design under other weights.",
+              .later = true),
+    MT_F_LONG("relaxations", relaxations, "What would let a design exist.", .later = true),
+    MT_F_LONG("trade", trade, "All points of the trade study, whatever for.", .later = true),
     MT_F_LONG("multiplications", multiplications,
-              "Of proofs by branch and bound and of tolerance boxes, about."),
+              "Of proofs by branch and bound and of tolerance boxes, about.", .later = true),
 };
 static const mt_record WORK_COUNTERS = MT_F_RECORD_OF(WORK_COUNTERS_FIELDS, NULL, NULL);
 #undef THIS
@@ -767,7 +785,8 @@ static const mt_field RUN_FIELDS[] = {
         "those that miss something what is missed), local search by local search in their "
         "fixed order, as if one worker had done all of it, and what it ended with; at most "
         "some hundred. The same for any number of workers, for a run in parts and for one that "
-        "was resumed. Empty where nothing was searched or an interrupt cut the search."),
+        "was resumed. Empty where nothing was searched or an interrupt cut the search.",
+        .later = true),
     MT_F_LONG("evaluations", evaluations,
               "Evaluations of the model: of a design in all configurations, or of one more "
               "position of a drive."),
@@ -776,10 +795,12 @@ static const mt_field RUN_FIELDS[] = {
         "Modal solutions that the evaluations and the judgement of designs over tolerances "
         "took: of one configuration at one design, one position of a drive or one corner of "
         "the tolerances each. Not counted: what following named modes takes between designs, "
-        "and proofs. The same for any number of workers, and for a run that was resumed."),
+        "and proofs. The same for any number of workers, and for a run that was resumed.",
+        .later = true),
     MT_F_RECORD("spent", spent, mt_result_work_counters, WORK_COUNTERS,
                 "What evaluations were for; all but the last add up to \"evaluations\". The "
-                "same for any number of workers, and for a run that was resumed."),
+                "same for any number of workers, and for a run that was resumed.",
+                .later = true),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES,
                  "Parts of the answer that an interrupt or the time limit cut, or that were "
                  "not begun because of it; empty where the run was not interrupted. They are "
@@ -787,11 +808,13 @@ static const mt_field RUN_FIELDS[] = {
                  "study, which have their own status."),
     MT_F_CHOICE_OR_NULL("cut_by", cut_by, CAUSES,
                         "What cut them: \"interrupt\" (a signal, or whoever asked the "
-                        "library), \"time limit\" (--time); null: nothing did."),
+                        "library), \"time limit\" (--time); null: nothing did.",
+                        .later = true),
     MT_F_LIST("overrides", overrides, n_overrides, mt_result_override, OVERRIDE,
               "Numbers that were asked for on the command line instead of what the files say "
               "(--set, --seed, --starts, --max-evaluations, --proof); the answer is that of "
-              "files that say so."),
+              "files that say so.",
+              .later = true),
     MT_F_LIST("inputs", inputs, n_inputs, mt_result_digest, INPUT, "Files read."),
     MT_F_LIST("outputs", outputs, n_outputs, mt_result_digest, OUTPUT,
               "Files written beside this one: a folder whose files are others is refused. "
@@ -827,9 +850,11 @@ static const mt_record SOURCE = MT_F_RECORD_OF(SOURCE_FIELDS, "file", "A file th
 static const mt_field STUDY_FIELDS[] = {
     MT_F_TEXT_OR_NULL("name", name, "What the study calls itself."),
     MT_F_TEXT("file", file, "Its own file name, without folder."),
-    MT_F_TEXT_OR_NULL("author", author, "Who asked, as the study says it."),
-    MT_F_TEXT_OR_NULL("revision", revision, "Issue of the question, as the study says it."),
-    MT_F_TEXT_OR_NULL("date", date, "Date of the question, as the study says it."),
+    MT_F_TEXT_OR_NULL("author", author, "Who asked, as the study says it.", .later = true),
+    MT_F_TEXT_OR_NULL("revision", revision, "Issue of the question, as the study says it.",
+                      .later = true),
+    MT_F_TEXT_OR_NULL("date", date, "Date of the question, as the study says it.",
+                      .later = true),
 };
 static const mt_record STUDY = MT_F_RECORD_OF(STUDY_FIELDS, NULL, NULL);
 #undef THIS
@@ -866,9 +891,9 @@ static const mt_field RESULT_FIELDS[] = {
               "What to know of the configurations that the goals name before reading any "
               "number: free motions, unstable directions, redundant joints, joints off their "
               "links, gaps that were closed."),
-    MT_F_LIST(
-        "assumptions", assumptions, n_assumptions, mt_result_assumption, ASSUMPTION,
-        "Parameters of the model whose origin is \"assumed\": the answer stands on them."),
+    MT_F_LIST("assumptions", assumptions, n_assumptions, mt_result_assumption, ASSUMPTION,
+              "Parameters of the model whose origin is \"assumed\": the answer stands on them.",
+              .later = true),
     MT_F_TEXTS("variables", variables, n_variables,
                "Names of the variables, in the study's order."),
     MT_F_LIST(
@@ -882,7 +907,8 @@ static const mt_field RESULT_FIELDS[] = {
     MT_F_LIST(
         "unchecked", unchecked, n_unchecked, mt_unchecked, UNCHECKED,
         "Designs of a search that was cut, best first, which there was no time to analyse "
-        "again: nothing is verified of them, and none of them is a recommendation."),
+        "again: nothing is verified of them, and none of them is a recommendation.",
+        .later = true),
     MT_F_LIST_OR_NULL(
         "undetermined", unidentifiable, n_unidentifiable, mt_unidentifiable_direction,
         UNIDENTIFIABLE,
@@ -902,7 +928,7 @@ static const mt_field RESULT_FIELDS[] = {
         "excitations", excitations, n_excitations, mt_result_excitation, EXCITATION,
         "Rotors and machines that the goals avoid: the lines of their Campbell diagrams."),
     MT_F_LIST("curves", curves, n_curves, mt_result_curve, mt_curve_record,
-              "Frequency responses that are shown of every design."),
+              "Frequency responses that are shown of every design.", .later = true),
     MT_F_OPTION("trade", trade, mt_trade_result, TRADE,
                 "The trade study; null: the study has none."),
     MT_F_LIST_OR_NULL("published", published, n_published, mt_result_published, PUBLISHED,

@@ -69,6 +69,16 @@ static void put_by_variable(mt_json_writer *w, const char *name, const double *v
     mt_json_close(w);
 }
 
+/* Less than the least is unknown: null, or of a file that lacks it nothing. */
+static void put_long(mt_json_writer *w, const mt_field *f, long value)
+{
+    if (value >= f->least || (!f->nullable && !f->later)) {
+        mt_json_put_integer(w, f->name, value);
+    } else if (f->nullable) {
+        mt_json_put_null(w, f->name);
+    }
+}
+
 static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
                       const names *variables)
 {
@@ -80,7 +90,9 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         break;
     case MT_FIELD_TEXT:
     case MT_FIELD_CHOICE:
-        mt_json_put_string(w, f->name, mt_record_get_pointer(at));
+        if (f->nullable || !f->later || mt_record_get_pointer(at) != NULL) {
+            mt_json_put_string(w, f->name, mt_record_get_pointer(at));
+        }
         break;
     case MT_FIELD_ENUM:
         mt_json_put_string(w, f->name, f->choices[*(const unsigned *)at]);
@@ -103,11 +115,7 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         mt_json_put_integer(w, f->name, *(const int *)at);
         break;
     case MT_FIELD_LONG:
-        if (f->nullable && *(const long *)at < f->least) {
-            mt_json_put_null(w, f->name);
-            break;
-        }
-        mt_json_put_integer(w, f->name, *(const long *)at);
+        put_long(w, f, *(const long *)at);
         break;
     case MT_FIELD_FLAG:
         mt_json_put_bool(w, f->name, *(const bool *)at);

@@ -265,7 +265,8 @@ static void add_document(mt_test *t, mt_text *out, const document *d)
     mt_text_add(out, "}}");
 }
 
-/* Documents that are written from records: all members are there, and no others. */
+/* Documents that are written from records: there are no other members; files of older programs
+ * may lack the later ones. */
 
 static void add_record(mt_test *t, mt_text *out, const mt_record *record);
 
@@ -405,13 +406,16 @@ static void add_record(mt_test *t, mt_text *out, const mt_record *record)
     int n = 0;
     REQUIRE(t, record->n <= MT_MAX_KEYS);
     for (int i = 0; i < record->n; i++) {
-        if (record->fields[i].name != NULL) {
+        if (record->fields[i].name != NULL && !record->fields[i].later) {
             names[n++] = record->fields[i].name;
         }
     }
     mt_text_add(out, "\"type\": \"object\", \"additionalProperties\": false, ");
-    add_texts(out, "required", n, names);
-    mt_text_add(out, ", \"properties\": {");
+    if (n > 0) {
+        add_texts(out, "required", n, names);
+        mt_text_add(out, ", ");
+    }
+    mt_text_add(out, "\"properties\": {");
     for (int i = 0, k = 0; i < record->n; i++) {
         if (record->fields[i].name != NULL) {
             mt_text_add(out, k++ == 0 ? "" : ", ");

@@ -67,8 +67,8 @@
 
   mt.chartSpent = {
     id: 'spent', title: 'What it took',
-    lead: () => `${run().evaluations} evaluations of the model, ` +
-      `${run().modal_solutions} modal solutions` +
+    lead: () => `${run().evaluations} evaluations of the model` +
+      (run().modal_solutions >= 0 ? `, ${run().modal_solutions} modal solutions` : '') +
       (run().spent.multiplications > 0 ? ', and ' + T.short(run().spent.multiplications, 2) +
         ' multiplications of proofs.' : '.'),
     draw: (g, w) => bars(g, w, spent(), 'evaluations', C.other),

@@ -1100,9 +1100,7 @@ class ResultMacMatrice(TypedDict):
     rows: List["ResultRow"]
 
 
-class ResultDesign(TypedDict):
-    """A design, judged."""
-
+class _ResultDesignAlways(TypedDict):
     rank: int
     feasible: bool
     grade: Optional[str]
@@ -1117,34 +1115,42 @@ class ResultDesign(TypedDict):
     singular: bool
     parameters: List["ResultParameter"]
     frequencies: List["ResultFrequency"]
-    mac_matrices: List["ResultMacMatrice"]
     clearances: List["ResultClearance"]
     gap_assignment: Optional[List["ResultGap"]]
     motion: List["ResultMotion"]
     tolerance_box: Optional["ResultToleranceBox"]
     goals: List["ResultGoal"]
-    responses: List["ResultResponse"]
-    responses_between: List["ResultResponseBetween"]
-    curves: List["ResultDesignCurve"]
     reasons: List["ResultReason"]
 
 
-class ResultParameter(TypedDict):
-    """A parameter that the study may change."""
+class ResultDesign(_ResultDesignAlways, total=False):
+    """A design, judged."""
 
+    mac_matrices: List["ResultMacMatrice"]
+    responses: List["ResultResponse"]
+    responses_between: List["ResultResponseBetween"]
+    curves: List["ResultDesignCurve"]
+
+
+class _ResultParameterAlways(TypedDict):
     name: str
     unit: Optional[str]
-    display_unit: Optional[str]
-    display_factor: Optional[float]
     original: Optional[float]
     recommended: Optional[float]
     change_percent: Optional[float]
     at_bound: Optional[Literal["lower", "upper"]]
-    lower: Optional[float]
-    upper: Optional[float]
     measure: Literal["logarithmic", "logarithmic with floor", "linear"]
     measure_floor: Optional[float]
     measure_scale: Optional[float]
+
+
+class ResultParameter(_ResultParameterAlways, total=False):
+    """A parameter that the study may change."""
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    lower: Optional[float]
+    upper: Optional[float]
 
 
 class ResultFrequency(TypedDict):
@@ -1205,8 +1211,6 @@ _ResultMotionAlways = TypedDict("_ResultMotionAlways", {
     "goal": str,
     "drive": str,
     "unit": Literal["rad", "m"],
-    "display_unit": Optional[str],
-    "display_factor": Optional[float],
     "from": Optional[float],
     "to": Optional[float],
     "positions": int,
@@ -1223,8 +1227,11 @@ _ResultMotionAlways = TypedDict("_ResultMotionAlways", {
 })
 
 
-class ResultMotion(_ResultMotionAlways):
+class ResultMotion(_ResultMotionAlways, total=False):
     """A design between the named positions of one drive."""
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
 
 
 class ResultPerVariable(TypedDict):
@@ -1244,11 +1251,8 @@ class ResultToleranceBox(TypedDict):
     per_variable: List["ResultPerVariable"]
 
 
-class ResultGoal(TypedDict):
-    """A goal, judged at this design."""
-
+class _ResultGoalAlways(TypedDict):
     goal: str
-    quantity: str
     pointer: str
     type: Literal[
         "frequency", "shape", "mac", "damping", "response", "vibration", "frequency_response",
@@ -1260,8 +1264,6 @@ class ResultGoal(TypedDict):
     reference: Optional[str]
     expression: Optional[str]
     unit: Optional[str]
-    display_unit: Optional[str]
-    display_factor: Optional[float]
     value: Optional[float]
     target: Optional[float]
     at_least: Optional[float]
@@ -1269,14 +1271,22 @@ class ResultGoal(TypedDict):
     tolerance_percent: Optional[float]
     worst: Optional[float]
     worst_at: Optional[Dict[str, Optional[float]]]
-    sensitivity: Optional[Dict[str, Optional[float]]]
-    off_most_hz: Optional[float]
-    off_most_ratio: Optional[float]
-    off_most_phase_deg: Optional[float]
     violation_percent: Optional[float]
     met: bool
     weighted: bool
     doubtful: bool
+
+
+class ResultGoal(_ResultGoalAlways, total=False):
+    """A goal, judged at this design."""
+
+    quantity: str
+    display_unit: Optional[str]
+    display_factor: Optional[float]
+    sensitivity: Optional[Dict[str, Optional[float]]]
+    off_most_hz: Optional[float]
+    off_most_ratio: Optional[float]
+    off_most_phase_deg: Optional[float]
 
 
 class ResultResponse(TypedDict):
@@ -1383,12 +1393,15 @@ class ResultDrawn(TypedDict):
     psd: List[Optional[float]]
 
 
-class ResultReason(TypedDict):
+class _ResultReasonAlways(TypedDict):
+    text: str
+
+
+class ResultReason(_ResultReasonAlways, total=False):
     """One sentence of why."""
 
     kind: Literal["change", "hold", "cost", "rank"]
     about: Optional[str]
-    text: str
 
 
 class ResultUnchecked(TypedDict):
@@ -1406,15 +1419,9 @@ class ResultUndetermined(TypedDict):
     components: Dict[str, Optional[float]]
 
 
-class ResultSpread(TypedDict):
-    """Where a variable of the best design moves when the weight of one goal at a time is
-    changed.
-    """
-
+class _ResultSpreadAlways(TypedDict):
     parameter: str
     unit: Optional[str]
-    display_unit: Optional[str]
-    display_factor: Optional[float]
     value: Optional[float]
     low: Optional[float]
     low_percent: Optional[float]
@@ -1424,6 +1431,15 @@ class ResultSpread(TypedDict):
     high_percent: Optional[float]
     high_goal: Optional[str]
     high_weight_factor: Optional[float]
+
+
+class ResultSpread(_ResultSpreadAlways, total=False):
+    """Where a variable of the best design moves when the weight of one goal at a time is
+    changed.
+    """
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
 
 
 class ResultCertificate(TypedDict):
@@ -1442,8 +1458,6 @@ _ResultRelaxationAlways = TypedDict("_ResultRelaxationAlways", {
     "pointer": str,
     "what": str,
     "unit": Optional[str],
-    "display_unit": Optional[str],
-    "display_factor": Optional[float],
     "from": float,
     "to": float,
     "change_percent": Optional[float],
@@ -1452,10 +1466,13 @@ _ResultRelaxationAlways = TypedDict("_ResultRelaxationAlways", {
 })
 
 
-class ResultRelaxation(_ResultRelaxationAlways):
+class ResultRelaxation(_ResultRelaxationAlways, total=False):
     """One number of the question whose change, with everything else as it is, lets a design
     meet all goals. That it suffices is verified; that a smaller change would not is sampled.
     """
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
 
 
 class ResultOrder(TypedDict):
@@ -1465,17 +1482,20 @@ class ResultOrder(TypedDict):
     order: float
 
 
-class ResultExcitation(TypedDict):
-    """Something that turns and excites at multiples of its speed."""
-
+class _ResultExcitationAlways(TypedDict):
     name: str
     pointer: str
     speed_lower_hz: float
     speed_upper_hz: float
     margin_percent: float
-    up_to_hz: Optional[float]
     configurations: List[str]
     orders: List["ResultOrder"]
+
+
+class ResultExcitation(_ResultExcitationAlways, total=False):
+    """Something that turns and excites at multiples of its speed."""
+
+    up_to_hz: Optional[float]
 
 
 class ResultLimit(TypedDict):
@@ -1535,12 +1555,15 @@ class ResultProfile(TypedDict):
     tones: List["ResultProfileTone"]
 
 
-class ResultVary(TypedDict):
-    """A quantity."""
-
+class _ResultVaryAlways(TypedDict):
     quantity: str
     pointer: str
     unit: Optional[str]
+
+
+class ResultVary(_ResultVaryAlways, total=False):
+    """A quantity."""
+
     display_unit: Optional[str]
     display_factor: Optional[float]
 
@@ -1563,9 +1586,7 @@ class ResultTrade(TypedDict):
     points: List["ResultPoint"]
 
 
-class ResultPublished(TypedDict):
-    """A published value against the computed one."""
-
+class _ResultPublishedAlways(TypedDict):
     label: Optional[str]
     kind: Literal["parameter", "quantity", "frequency", "mac", "status"]
     pointer: str
@@ -1575,10 +1596,15 @@ class ResultPublished(TypedDict):
     difference: Optional[float]
     difference_percent: Optional[float]
     demand: Optional[str]
-    display_unit: Optional[str]
-    display_factor: Optional[float]
     holds: bool
     source: Optional[str]
+
+
+class ResultPublished(_ResultPublishedAlways, total=False):
+    """A published value against the computed one."""
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
 
 
 class ResultHistory(TypedDict):
@@ -1592,7 +1618,7 @@ class ResultHistory(TypedDict):
     feasible: bool
 
 
-class ResultSpent(TypedDict):
+class ResultSpent(TypedDict, total=False):
     """What evaluations were for; all but the last add up to "evaluations". The same for any
     number of workers, and for a run that was resumed.
     """
@@ -1606,16 +1632,19 @@ class ResultSpent(TypedDict):
     multiplications: int
 
 
-class ResultOverride(TypedDict):
-    """One of them."""
-
+class _ResultOverrideAlways(TypedDict):
     kind: Literal["parameter", "search"]
     name: str
     unit: Optional[str]
-    display_unit: Optional[str]
-    display_factor: Optional[float]
     value: float
     original: Optional[float]
+
+
+class ResultOverride(_ResultOverrideAlways, total=False):
+    """One of them."""
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
 
 
 class ResultInput(TypedDict):
@@ -1632,9 +1661,7 @@ class ResultOutput(TypedDict):
     sha256: str
 
 
-class ResultRun(TypedDict):
-    """What ran: no time, path or number of workers."""
-
+class _ResultRunAlways(TypedDict):
     modetune: Optional[str]
     build: "ResultBuild"
     blas: Optional[str]
@@ -1645,18 +1672,23 @@ class ResultRun(TypedDict):
     distinct_designs: Optional[int]
     found_once: Optional[int]
     estimated_missing: Optional[float]
-    history: List["ResultHistory"]
     evaluations: int
-    modal_solutions: int
-    spent: "ResultSpent"
     incomplete: List[
         Literal["search", "recommendations", "spread", "certificates", "relaxations",
         "published", "trade"]
     ]
-    cut_by: Optional[Literal["interrupt", "time limit"]]
-    overrides: List["ResultOverride"]
     inputs: List["ResultInput"]
     outputs: List["ResultOutput"]
+
+
+class ResultRun(_ResultRunAlways, total=False):
+    """What ran: no time, path or number of workers."""
+
+    history: List["ResultHistory"]
+    modal_solutions: int
+    spent: "ResultSpent"
+    cut_by: Optional[Literal["interrupt", "time limit"]]
+    overrides: List["ResultOverride"]
 
 
 class ResultBuild(TypedDict):
@@ -1666,26 +1698,32 @@ class ResultBuild(TypedDict):
     compiler: str
 
 
-class ResultStudy(TypedDict):
-    """The question."""
-
+class _ResultStudyAlways(TypedDict):
     name: Optional[str]
     file: str
+
+
+class ResultStudy(_ResultStudyAlways, total=False):
+    """The question."""
+
     author: Optional[str]
     revision: Optional[str]
     date: Optional[str]
 
 
-class ResultAssumption(TypedDict):
-    """An assumed value."""
-
+class _ResultAssumptionAlways(TypedDict):
     parameter: str
     unit: Optional[str]
-    display_unit: Optional[str]
-    display_factor: Optional[float]
     value: float
     source: Optional[str]
     variable: bool
+
+
+class ResultAssumption(_ResultAssumptionAlways, total=False):
+    """An assumed value."""
+
+    display_unit: Optional[str]
+    display_factor: Optional[float]
 
 
 class ResultObjective(TypedDict):
@@ -1696,9 +1734,7 @@ class ResultObjective(TypedDict):
     unit: Optional[str]
 
 
-class Result(TypedDict):
-    """What a study answers. SI units; frequencies in Hz; null stands for "not applicable"."""
-
+class _ResultAlways(TypedDict):
     format: Literal["modetune-result/1"]
     study: "ResultStudy"
     model: "ResultFile"
@@ -1706,22 +1742,27 @@ class Result(TypedDict):
     status_text: Optional[str]
     doubts: List["ResultDoubt"]
     facts: List["ResultDoubt"]
-    assumptions: List["ResultAssumption"]
     variables: List[str]
     objectives: List["ResultObjective"]
     baseline: "ResultDesign"
     recommendations: List["ResultDesign"]
-    unchecked: List["ResultUnchecked"]
     undetermined: Optional[List["ResultUndetermined"]]
     spread: Optional[List["ResultSpread"]]
     certificates: Optional[List["ResultCertificate"]]
     relaxations: Optional[List["ResultRelaxation"]]
     excitations: List["ResultExcitation"]
-    curves: List["ResultCurve"]
     trade: Optional["ResultTrade"]
     published: Optional[List["ResultPublished"]]
     warnings: List[str]
     run: "ResultRun"
+
+
+class Result(_ResultAlways, total=False):
+    """What a study answers. SI units; frequencies in Hz; null stands for "not applicable"."""
+
+    assumptions: List["ResultAssumption"]
+    unchecked: List["ResultUnchecked"]
+    curves: List["ResultCurve"]
 
 
 class IndexStudy(TypedDict):
