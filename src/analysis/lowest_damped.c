@@ -87,19 +87,6 @@ static bool refuse_damped(search *k, const char *why)
     return false;
 }
 
-/* The loss factor that most springs have. */
-static double most_common_loss(const mt_data *d, const mt_term_list *list)
-{
-    double most = 0.0;
-    int votes = 0;
-    for (int i = 0; i < list->n_terms; i++) { /* Boyer and Moore's vote */
-        const double own = node_value(d, list->terms[i].loss);
-        most = votes == 0 ? own : most;
-        votes += own == most ? 1 : -1;
-    }
-    return most;
-}
-
 static double local_coefficient(const search *k, const mt_data *d, mt_term_kind kind,
                                 const mt_term *t)
 {
@@ -178,7 +165,7 @@ static mt_status read_damping(search *k, bool *is, mt_err *err)
     k->alpha = node_value(&d, def->mass);
     k->beta = node_value(&d, def->stiffness);
     /* under a load K is more than its springs */
-    k->loss = sys->loaded ? 0.0 : most_common_loss(&d, &list[MT_TERM_STIFFNESS]);
+    k->loss = sys->loaded ? 0.0 : mt_terms_common_loss(&d, &list[MT_TERM_STIFFNESS]);
     if (def->n_named > 0) {
         *is = refuse_damped(k, "damping ratios of named modes need all modes");
         return MT_OK;

@@ -265,6 +265,19 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
     return MT_OK;
 }
 
+/* Boyer and Moore's vote. */
+double mt_terms_common_loss(const mt_data *d, const mt_term_list *list)
+{
+    double most = 0.0;
+    int votes = 0;
+    for (int i = 0; i < list->n_terms; i++) {
+        const double own = creal(mt_data_scalar(d, list->terms[i].loss, 0.0));
+        most = votes == 0 ? own : most;
+        votes += own == most ? 1 : -1;
+    }
+    return most;
+}
+
 /* row += scale * displacement along unit vector e of the point s from the centre, in the local
  * freedoms of side 0 or 1; the same for the rotation about e. */
 static void row_add_point(mt_cx *row, int side, const mt_cx *s, const mt_cx *e, mt_cx scale)

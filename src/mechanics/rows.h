@@ -42,6 +42,8 @@ typedef struct mt_term_list {
 
 /* The terms of a system (topology only). lists[MT_TERM_KINDS]. */
 mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err);
+/* The loss factor that most terms of the list have; any one's where none has a majority. */
+double mt_terms_common_loss(const mt_data *d, const mt_term_list *list);
 /* The term of one inertia, without its rows in a list. */
 mt_term mt_term_of_inertia(const mt_system *sys, int i);
 /* Rows of one term at given poses: rows[12 * count], entry k of a row belongs to local freedom

@@ -307,8 +307,6 @@ static void nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, bool close,
  */
 
 enum { ROUNDS = 3 };
-/* KKT residuals below this are local solutions. */
-static const double STATIONARY = 1e-6;
 /* Length of the first step away from a saddle. */
 static const double SADDLE_STEP = 0.05;
 /* Rows and those that follow from them are one within this: there rows have no slopes of their
@@ -372,7 +370,8 @@ static void newton(mt_nlp_engine *e, mt_nlp_local *s, double *saddle)
     memset(saddle, 0, (size_t)e->n * sizeof *saddle);
     if (mt_nlp_nearly_feasible(s->last)) {
         mt_nlp_polish(e, MT_NLP_OBJECTIVE, s->last, saddle);
-        if (mt_nlp_feasible(s->last) && (s->last->kkt <= STATIONARY || !mt_nlp_feasible(p))) {
+        if (mt_nlp_feasible(s->last) &&
+            (s->last->kkt <= MT_STATIONARY || !mt_nlp_feasible(p))) {
             mt_nlp_point_copy(e, p, s->last);
             return;
         }
@@ -438,12 +437,12 @@ static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
             mt_nlp_point_copy(e, s->p, before);
             return;
         }
-        const bool idle = round > 0 && mt_nlp_feasible(before) && s->p->kkt > STATIONARY &&
+        const bool idle = round > 0 && mt_nlp_feasible(before) && s->p->kkt > MT_STATIONARY &&
                           is_crossing(e, s->p) &&
                           s->p->f >= before->f - (GAIN * fabs(before->f));
         mt_nlp_point_copy(e, before, s->p);
         const bool last = round + 1 == ROUNDS || idle || !mt_nlp_feasible(s->p);
-        if (last || (!step_off(e, saddle, s->p) && s->p->kkt <= STATIONARY)) {
+        if (last || (!step_off(e, saddle, s->p) && s->p->kkt <= MT_STATIONARY)) {
             return;
         }
     }

@@ -46,6 +46,8 @@ typedef struct mt_merit {
 /* Designs nearer than this in every coordinate (0.1 percent in a positive parameter) are
  * one. */
 #define MT_SAME_DESIGN 1e-3
+/* KKT residuals up to this are those of local solutions. */
+#define MT_STATIONARY 1e-6
 
 /* -1 where a < b, 1 where b < a; 0 where |a - b| <= equal max(|a|, |b|, 1e-6), or where one is
  * NaN. */

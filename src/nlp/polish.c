@@ -41,8 +41,6 @@ static const double VIOLATION_DONE = 1e-6;
  * differences: no step along them; below minus SADDLE of it they are negative. */
 static const double CURVATURE_NOISE = 1e-7;
 static const double SADDLE = 1e-4;
-/* KKT residuals below this are stationary points. */
-static const double STATIONARY = 1e-6;
 /* Curvatures and multipliers below this part of the gradients hold nothing: a direction with no
  * more is known to rounding over it, to fewer digits than are told. Of gradients that vanish
  * this part of the largest one met counts, as in kkt.c. */
@@ -270,8 +268,8 @@ static void keep_if_better(polish *w)
         (value > w->limit && (!constrained || mt_nlp_feasible(b)))) {
         return;
     }
-    const double mine = constrained ? fmax(p->kkt, p->violation * STATIONARY) : p->kkt;
-    const double theirs = constrained ? fmax(b->kkt, b->violation * STATIONARY) : b->kkt;
+    const double mine = constrained ? fmax(p->kkt, p->violation * MT_STATIONARY) : p->kkt;
+    const double theirs = constrained ? fmax(b->kkt, b->violation * MT_STATIONARY) : b->kkt;
     const bool first = constrained && mt_nlp_feasible(p) && !mt_nlp_feasible(b);
     /* from outside, the requirements cost what they cost: the limit counts from here */
     if (first) {
@@ -423,7 +421,7 @@ static bool newton_step(polish *w, double *size, double *saddle)
     }
     w->n_loose = loose_directions(w);
     w->isolated = is_isolated(w);
-    if (saddle != NULL && w->a.kkt <= STATIONARY && find_saddle(w, saddle)) {
+    if (saddle != NULL && w->a.kkt <= MT_STATIONARY && find_saddle(w, saddle)) {
         return false;
     }
     if (done) {
@@ -476,7 +474,7 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p, double
         mt_nlp_point_copy(e, w.best, p);
         run_newton_iterations(&w, saddle);
         w.best->n_loose = w.n_loose >= 0 ? w.n_loose : p->n_loose;
-        w.best->isolated = w.isolated && w.best->kkt <= STATIONARY;
+        w.best->isolated = w.isolated && w.best->kkt <= MT_STATIONARY;
         mt_nlp_point_copy(e, p, w.best);
     }
     mt_arena_rewind(mem, mark);

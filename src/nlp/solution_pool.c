@@ -186,8 +186,6 @@ static const double ROOM = 0.25;
 static const double ROOM_LEAST = 1e-6;
 /* Violation, in tolerances, that needs no correction. */
 static const double RESTORED = 1e-3;
-/* KKT residuals below this belong to a local solution (as in the search). */
-static const double STATIONARY = 1e-6;
 
 typedef struct crossing {
     mt_nlp_engine *e;
@@ -563,7 +561,7 @@ static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
     const double misfit = sqrt(2 * before->f) + RESIDUAL_TOL * sqrt(q->n_res);
     const double f_most =
         q->n_res > 0 ? 0.5 * misfit * misfit : before->f + F_TOL_REL * fabs(before->f);
-    const bool stationary = after->kkt <= fmax(before->kkt, STATIONARY);
+    const bool stationary = after->kkt <= fmax(before->kkt, MT_STATIONARY);
     return mt_nlp_feasible(after) && after->f <= f_most && stationary;
 }
 
@@ -690,7 +688,7 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *once)
 
 bool mt_nlp_came_to_rest(const mt_nlp_local *s)
 {
-    return s->polished && s->p->kkt <= STATIONARY;
+    return s->polished && s->p->kkt <= MT_STATIONARY;
 }
 
 /*
@@ -831,7 +829,7 @@ static void drop_useless(mt_nlp_solution_pool *all)
     bool stationary = false;
     for (int i = 0; i < all->count; i++) {
         const bool counts = any == mt_nlp_feasible(all->at[i].p);
-        stationary = stationary || (counts && all->at[i].p->kkt <= STATIONARY);
+        stationary = stationary || (counts && all->at[i].p->kkt <= MT_STATIONARY);
     }
     int kept = 0;
     for (int i = 0; i < all->count; i++) {

@@ -334,20 +334,6 @@ static void pass_inputs(work *k, const double *v, double *d)
     }
 }
 
-/* The loss factor that most springs have. */
-static double common_loss(const work *k)
-{
-    const mt_term_list *const list = &k->list[MT_TERM_STIFFNESS];
-    double most = 0.0;
-    int votes = 0;
-    for (int i = 0; i < list->n_terms; i++) { /* Boyer and Moore's vote */
-        const double own = large_value(k, list->terms[i].loss);
-        most = votes == 0 ? own : most;
-        votes += own == most ? 1 : -1;
-    }
-    return most;
-}
-
 /* v -= K^-1 K v, K v being k->states. */
 static mt_status smooth_cut(work *k, double *v, mt_err *err)
 {
@@ -371,7 +357,9 @@ static mt_status open_joint_forces(work *k, int o, const int *moved, double *v, 
     const mt_system *const sys = k->l->sys;
     const bool smooth = k->l->way == MT_LOWEST_SPARSE && k->shift == 0.0;
     const coefficient whole = {.lossy = false};
-    const coefficient lossy = {.lossy = true, .less = smooth ? common_loss(k) : 0.0};
+    const coefficient lossy = {
+        .lossy = true,
+        .less = smooth ? mt_terms_common_loss(&k->d, &k->list[MT_TERM_STIFFNESS]) : 0.0};
     cut *const own = &k->cuts[o];
     multiply_terms(k, MT_TERM_STIFFNESS, moved, whole, v, is);
     if (*is && smooth) {
@@ -504,7 +492,7 @@ static mt_status open_sides(work *k, bool *is, mt_err *err)
     const mt_damping_def *const d = &k->l->sys->damping;
     k->alpha = large_value(k, d->mass);
     k->beta = large_value(k, d->stiffness);
-    k->loss = common_loss(k);
+    k->loss = mt_terms_common_loss(&k->d, &k->list[MT_TERM_STIFFNESS]);
     k->sides = mt_arena_alloc(k->scratch, MOST_SIDES, sizeof *k->sides);
     MT_TRY(mt_arena_check(k->scratch, err));
     if (k->loss != 0.0 && k->l->sys->loaded) {

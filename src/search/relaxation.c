@@ -428,8 +428,6 @@ static const near_miss *relaxation_miss(const near_misses *misses, const int *be
 enum { STARTS = 6, AGREE = 3, EVALUATIONS = 200, ASSIGNMENTS = 6 };
 /* Where the study sets a budget: what a search of one move needs at least of it. */
 enum { BUDGET_LEAST = 2 * EVALUATIONS };
-/* KKT residuals of local minima, as in searches. */
-static const double STATIONARY = 1e-6;
 /* A move smaller than this is none: then a design exists without it, and the search has missed
  * it. */
 static const double LEAST = 1e-9;
@@ -745,7 +743,7 @@ static mt_status search_from_known(mt_nlp nlp, mt_nlp_options opt, const mt_move
     opt.no_compromise = true;
     MT_TRY(solve_move_size(r->w, &nlp, &opt, out, found, err));
     *enough = found->n_solutions > 0 && found->solutions[0].feasible &&
-              !(found->solutions[0].kkt > STATIONARY);
+              !(found->solutions[0].kkt > MT_STATIONARY);
     return MT_OK;
 }
 

@@ -39,8 +39,6 @@ enum { STEPS = 12 };
 static const double RANK_TOL = 1e-10;
 /* No farther from the chord than this part of it. */
 static const double ASIDE = 0.25;
-/* KKT residuals below this are local solutions, as in the search. */
-static const double STATIONARY = 1e-6;
 
 typedef struct continua {
     mt_workspace *ws;
@@ -208,7 +206,7 @@ static void join_solutions(const continua *c, int into, const mt_nlp_solution *o
     const int hits = s->hits + other->hits;
     const int start = s->start < other->start ? s->start : other->start;
     const bool told = into == 0 && out->n_unidentifiable > 0;
-    if (!told && other->kkt <= STATIONARY && mt_search_nearer(c->ws->c, other->t, s->t)) {
+    if (!told && other->kkt <= MT_STATIONARY && mt_search_nearer(c->ws->c, other->t, s->t)) {
         *s = *other;
     }
     s->hits = hits;

@@ -496,7 +496,6 @@ static const double STEP = 0.05;
 static const double SHORTER = 0.3;
 /* A smaller gain, relative to the objective, is none. */
 static const double GAIN = 1e-8;
-static const double STATIONARY = 1e-6;
 /* A design that uses the tolerances of its requirements (a relative 1e-6) is lighter by about
  * so much than one that meets them exactly. */
 static const double TOLERANCES_BUY = 1e-5;
@@ -804,7 +803,7 @@ static mt_status hold_clusters(refine *w, double *kkt, double *z, mt_nlp_solutio
                              err));
         *better = found[k] && take_better(w, at, f[k], s);
     }
-    for (int k = 0; k < MT_COUNT(NEAR) && !*better && *kkt > STATIONARY; k++) {
+    for (int k = 0; k < MT_COUNT(NEAR) && !*better && *kkt > MT_STATIONARY; k++) {
         if (found[k] && f[k] < f_from + TOLERANCES_BUY * fabs(f_from) && !spent(w, RESERVED)) {
             MT_TRY(evaluate_exact_clusters(w, t + ((size_t)k * n), f[k], kkt, z, s, err));
         }
@@ -827,11 +826,11 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
          round++) {
         bool better = false;
         MT_TRY(evaluate_cluster_kkt(w, s->t, &kkt, z, NULL, err));
-        if (kkt <= STATIONARY) {
+        if (kkt <= MT_STATIONARY) {
             break;
         }
         MT_TRY(hold_clusters(w, &kkt, z, s, &better, err));
-        if (!better && kkt > STATIONARY) {
+        if (!better && kkt > MT_STATIONARY) {
             MT_TRY(step_down(w, z, s, &better, err));
         }
         if (!better) {
@@ -896,7 +895,7 @@ mt_status mt_search_repeated_eigenvalues(mt_workspace *ws, long most, mt_arena *
                         mt_objective_is(ws->c->stages[ws->c->stage].type, MT_RESIDUALS);
     w.most = most > 0 ? most : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
     for (int i = 0; i < out->n_solutions && !smooth; i++) {
-        if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {
+        if (out->solutions[i].kkt > MT_STATIONARY && out->solutions[i].feasible) {
             any = true;
             const mt_status rc = refine_one(&w, &out->solutions[i], err);
             if (mt_is_final(rc) || rc == MT_E_USAGE) {
