@@ -77,6 +77,7 @@ typedef struct sampler {
     bool at_corner; /* the last step began at a corner from which every slope leads to worse */
     int halvings;   /* elsewhere */
     int rounds;     /* of all kinds of moves */
+    bool is_coarse; /* the number is one that nobody limits */
     int n_spread;
     const double *spread; /* n x n_spread, the first in the middle */
     /* n x n_explored: corners about which all numbers are known already */
@@ -314,6 +315,18 @@ static void note_explored(sampler *s, const double *at)
     }
 }
 
+/* True where no value searched, of values that ascend, meets its neighbour at any sample: there
+ * are no ridges, and what slopes call the worst corner is that, but for a second valley. */
+static bool are_apart(const sampler *s)
+{
+    const mt_tolerance_range *const r = s->out;
+    bool apart = true;
+    for (int k = 0; k + 1 < s->q->m && k < s->q->n_descend; k++) {
+        apart = apart && r[k].value[MT_HIGHEST] < r[k + 1].value[MT_LOWEST];
+    }
+    return apart;
+}
+
 /* All kinds of moves, until none gains. */
 static mt_status descend(sampler *s, int k, mt_tolerance_side side, mt_err *err)
 {
@@ -323,7 +336,8 @@ static mt_status descend(sampler *s, int k, mt_tolerance_side side, mt_err *err)
     for (int turn = 0; turn < s->rounds && gain > GAIN * fabs(*best); turn++) {
         const double before = *best;
         MT_TRY(repeat(s, step_to_extreme, k, side, err));
-        if (s->at_corner && is_explored(s, at)) {
+        const bool settled = s->is_coarse && are_apart(s);
+        if (s->at_corner && (settled || is_explored(s, at))) {
             return MT_OK;
         }
         note_explored(s, at);
@@ -362,6 +376,7 @@ mt_status mt_tolerance_sample(const mt_tolerance_probe *q, mt_arena *mem,
             q->descents == NULL ? MT_DESCENT_FINE : q->descents[k][side];
         s.halvings = how == MT_DESCENT_FINE ? HALVINGS : HALVINGS_COARSE;
         s.rounds = how == MT_DESCENT_FINE ? ROUNDS_MOST : ROUNDS_COARSE;
+        s.is_coarse = how == MT_DESCENT_COARSE;
         MT_TRY(how != MT_DESCENT_NONE && MT_HAS(out[k].value[side]) ? descend(&s, k, side, err)
                                                                     : MT_OK);
     }
