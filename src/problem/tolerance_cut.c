@@ -247,8 +247,8 @@ static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_c
     return MT_OK;
 }
 
-mt_status mt_tolerance_verify(mt_workspace *w, const double *t, mt_arena *mem,
-                              mt_tolerance_cuts *cuts, mt_err *err)
+static mt_status verify(mt_workspace *w, const double *t, bool by_slopes, mt_arena *mem,
+                        mt_tolerance_cuts *cuts, mt_err *err)
 {
     mt_nlp_values v;
     begin_judging(cuts);
@@ -261,7 +261,19 @@ mt_status mt_tolerance_verify(mt_workspace *w, const double *t, mt_arena *mem,
     MT_TRY(mt_subproblem_values_init(w->c, mem, &v, err));
     MT_TRY(mt_workspace_eval(w, t, true, &v, err));
     MT_TRY(verify_by_slopes(w, mem, cuts, far, err));
-    return cuts->added > 0 ? MT_OK : lower(w, &v, far, mem, cuts, err);
+    return cuts->added > 0 || by_slopes ? MT_OK : lower(w, &v, far, mem, cuts, err);
+}
+
+mt_status mt_tolerance_verify(mt_workspace *w, const double *t, mt_arena *mem,
+                              mt_tolerance_cuts *cuts, mt_err *err)
+{
+    return verify(w, t, false, mem, cuts, err);
+}
+
+mt_status mt_tolerance_verify_by_slopes(mt_workspace *w, const double *t, mt_arena *mem,
+                                        mt_tolerance_cuts *cuts, mt_err *err)
+{
+    return verify(w, t, true, mem, cuts, err);
 }
 
 /* The corners of one set, and those of its cuts. */

@@ -41,8 +41,12 @@ typedef struct mt_tolerance_cuts {
  */
 mt_status mt_tolerance_verify(mt_workspace *w, const double *t, mt_arena *mem,
                               mt_tolerance_cuts *cuts, mt_err *err);
-/* The same for the design that w was evaluated at; lowers its sampled rows v->in to those of
- * the worst points. No effect where nothing is sampled. */
+/* The same at the corners by the slopes alone, for a design from which the search continues in
+ * any case. Cost: an analysis for each limited mode. */
+mt_status mt_tolerance_verify_by_slopes(mt_workspace *w, const double *t, mt_arena *mem,
+                                        mt_tolerance_cuts *cuts, mt_err *err);
+/* mt_tolerance_verify for the design that w was evaluated at; lowers its sampled rows v->in to
+ * those of the worst points. No effect where nothing is sampled. */
 mt_status mt_tolerance_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
                              mt_tolerance_cuts *cuts, mt_err *err);
 /* *out: corners of a subproblem and the cuts, in mem, as the tolerance_box of a copy of it

@@ -124,11 +124,17 @@ enum { ROUNDS = 12, STARTS = 6, STARTS_ALONE = 3 };
 /* Of a budget, for judging what a search ends with: so many evaluations, or one in so many. */
 enum { JUDGED = 16, PART = 4 };
 
-mt_status mt_search_verify(mt_workspace *w, bool last, mt_arena *mem, mt_tolerance_cuts *cuts,
-                           mt_nlp_solution *s, bool *again, mt_err *err)
+/* How far a design is verified over its tolerances: wherever its limits could be missed, or at
+ * the corners that slopes name, which is enough where its search goes on in any case. */
+typedef enum verification { VERIFY_ALL, VERIFY_BY_SLOPES } verification;
+
+static mt_status verify_tolerances(mt_workspace *w, verification how, bool last, mt_arena *mem,
+                                   mt_tolerance_cuts *cuts, mt_nlp_solution *s, bool *again,
+                                   mt_err *err)
 {
     *again = false;
-    MT_TRY(mt_tolerance_verify(w, s->t, mem, cuts, err));
+    MT_TRY(how == VERIFY_ALL ? mt_tolerance_verify(w, s->t, mem, cuts, err)
+                             : mt_tolerance_verify_by_slopes(w, s->t, mem, cuts, err));
     const mt_missed *const m = &cuts->missed;
     *again = !last && cuts->added > 0;
     if (!*again && !mt_is_met(m->violation, 1.0)) {
@@ -137,6 +143,12 @@ mt_status mt_search_verify(mt_workspace *w, bool last, mt_arena *mem, mt_toleran
         s->violation = s->violation > m->violation ? s->violation : m->violation;
     }
     return MT_OK;
+}
+
+mt_status mt_search_verify(mt_workspace *w, bool last, mt_arena *mem, mt_tolerance_cuts *cuts,
+                           mt_nlp_solution *s, bool *again, mt_err *err)
+{
+    return verify_tolerances(w, VERIFY_ALL, last, mem, cuts, s, again, err);
 }
 
 /* Directions that the goals do not settle at the design t. */
@@ -179,10 +191,19 @@ static bool lacks(const rounds *r, long evals)
     return most > 0 && most - r->out->evals < evals;
 }
 
+/* True where the nearest of the designs that are as good as solution i is still to be sought:
+ * the first search leaves that to the one with the cuts. */
+static bool is_to_be_nearer(const rounds *r, int i, bool last)
+{
+    return r->out->solutions[i].flat && r->over_tolerances && !r->c->as_found &&
+           r->round == 1 && !last;
+}
+
 /* Verifies solution i over its tolerances and positions. */
 static mt_status verify_solution(rounds *r, int i, bool last, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
+    const verification how = is_to_be_nearer(r, i, last) ? VERIFY_BY_SLOPES : VERIFY_ALL;
     r->open[i] = false;
     if (r->over_tolerances && lacks(r, 1 + r->c->search.judged_as)) {
         s->feasible = false; /* not known */
@@ -190,7 +211,7 @@ static mt_status verify_solution(rounds *r, int i, bool last, mt_err *err)
         return MT_OK;
     }
     if (r->over_tolerances) {
-        MT_TRY(mt_search_verify(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
+        MT_TRY(verify_tolerances(r->ws, how, last, r->mem, &r->cuts, s, &r->open[i], err));
         r->out->evals += 1 + mt_subproblem_worth(r->c, r->cuts.solutions);
     }
     if (r->over_positions && s->feasible && !lacks(r, r->judgement)) {
@@ -212,9 +233,7 @@ static mt_status verify_open(rounds *r, bool last, bool *any, mt_err *err)
         }
         const mt_nlp_solution *const s = &r->out->solutions[i];
         const bool holds = s->feasible && !r->open[i];
-        /* of equal designs the nearest has not been sought */
-        const bool nearer = s->flat && r->over_tolerances && !r->c->as_found;
-        r->open[i] = r->open[i] || (holds && nearer && r->round == 1 && !last);
+        r->open[i] = r->open[i] || (holds && is_to_be_nearer(r, i, last));
         *any = *any || r->open[i];
         if (r->c->best_alone && r->round == 1 && holds) {
             r->out->n_solutions = i + 1; /* what the search ranked behind it is worse */
@@ -353,6 +372,26 @@ static bool any_feasible(const rounds *r)
     return any;
 }
 
+/* True where a design that was verified makes it needless to verify s: it is the same design,
+ * or only the best is wanted and s is not better. */
+static bool is_needless(const rounds *r, const mt_nlp_solution *s)
+{
+    const mt_subproblem *const c = r->c;
+    const mt_merit new = {s->feasible, s->squares, 1, &s->f};
+    bool needless = false;
+    for (int i = 0; i < r->out->n_solutions && !needless; i++) {
+        mt_nlp_solution *const old = &r->out->solutions[i];
+        const mt_merit known = {old->feasible, old->squares, 1, &old->f};
+        const bool ranked = c->best_alone && c->as_found && c->n_stages == 1;
+        if (old->feasible && r->kept[i]) {
+            needless = mt_search_same(c->p->n, old->t, s->t) ||
+                       (ranked && !mt_merit_before(&new, &known, MT_EQUAL_FOUND));
+            old->continuum = old->continuum || (needless && s->continuum);
+        }
+    }
+    return needless;
+}
+
 /* Adds the designs of a further search; those that meet nothing are dropped. */
 static mt_status add_searched_designs(rounds *r, const mt_nlp_result *more, mt_err *err)
 {
@@ -368,14 +407,20 @@ static mt_status add_searched_designs(rounds *r, const mt_nlp_result *more, mt_e
         all[i] = out->solutions[i];
         kept[i] = r->kept[i];
     }
+    int n_all = old;
     for (int i = 0; i < more->n_solutions; i++) {
-        all[old + i] = more->solutions[i];
-        open[old + i] = true;
-        kept[old + i] = true;
+        if (old == 0 || !is_needless(r, &more->solutions[i])) {
+            all[n_all] = more->solutions[i];
+            open[n_all] = true;
+            kept[n_all++] = true;
+        }
+    }
+    for (int i = 0; i < old; i++) {
+        all[i].continuum = out->solutions[i].continuum;
     }
     r->again = directions_of(more);
     out->solutions = all;
-    out->n_solutions = (int)n;
+    out->n_solutions = n_all;
     r->open = open;
     r->kept = kept;
     return MT_OK;
@@ -506,7 +551,9 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     bool again = false;
     MT_TRY(open_all(&r, err));
     mt_status rc = go_round(&r, &cut, err);
-    if (rc == MT_OK && r.cuts.n > 0 && !is_used_up(&r)) {
+    /* what begins at a design that was found over its tolerances has had these starts */
+    const bool known = r.c->best_alone && !r.c->as_found && any_feasible(&r);
+    if (rc == MT_OK && r.cuts.n > 0 && !known && !is_used_up(&r)) {
         rc = start_again(&r, &again, err);
         rc = rc == MT_OK && again ? go_round(&r, &cut, err) : rc;
     }
