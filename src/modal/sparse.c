@@ -10,6 +10,7 @@
 #include <float.h>
 #include <limits.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,7 @@ enum { SPARSE_COLUMNS = 12 };
 typedef struct sparse {
     const mt_sparse_problem *p;
     double shift;
+    double blocked;   /* a lower shift, at which the factor was not sound; 0: none */
     double *gamma;    /* [rows of A] */
     double stiffer;   /* a factor of STIFFER */
     bool outweigh;    /* gamma outweighs G in each constrained state */
@@ -644,6 +646,14 @@ static const double MOST_SHIFT = 100.0;
 static const double LEAST_SHIFT = 0.25;
 /* Tries of a first shift, and of a better one. */
 enum { SHIFTS = 2, ROUNDS = 4 };
+/* A subspace that a first shift is lowered by: the motions of a free body and two more, so many
+ * times. What it finds below RESOLVED of the shift may be a rigid-body mode, solved to ROUGHLY:
+ * a step lowers the shift to some tenth of it. */
+enum { SUBSPACE = 8, LOWERINGS = 20 };
+static const double RESOLVED = 3e-2;
+static const double ROUGHLY = 1e-6;
+/* A shift is near enough at so many times the lowest mode that the subspace shows. */
+static const double NEAR_SHIFT = 1.5;
 /* Columns of Lanczos' method at a time. */
 enum { BLOCK = 4 };
 /* Roundings of a strain, and strains so many times their rounding that are none. */
@@ -828,6 +838,119 @@ static double lowest_lambda(const mt_modes *m)
     return lowest < HUGE_VAL ? lowest : 0.0;
 }
 
+/* Columns orthonormal in M, n x count; false where they are dependent but for rounding. */
+static bool orthonormalise(sparse *s, int count, double *x)
+{
+    static const double DEPENDENT_VECTORS = 1e-10;
+    const int n = s->p->n;
+    for (int c = 0; c < count; c++) {
+        double *const own = x + ((ptrdiff_t)n * c);
+        sparse_metric(s, own, s->w);
+        const double whole = mt_dot(n, own, s->w);
+        for (int pass = 0; pass < 2; pass++) {
+            for (int b = 0; b < c; b++) {
+                const double *const before = x + ((ptrdiff_t)n * b);
+                mt_axpy(n, -mt_dot(n, before, s->w), before, own);
+            }
+            sparse_metric(s, own, s->w);
+        }
+        const double square = mt_dot(n, own, s->w);
+        if (!(square > DEPENDENT_VECTORS * DEPENDENT_VECTORS * whole)) {
+            return false;
+        }
+        for (int j = 0; j < n; j++) {
+            own[j] /= sqrt(square);
+        }
+    }
+    return true;
+}
+
+/* y := (K + s M)^-1 M x, and the lowest lambda above RESOLVED s of its Ritz values; infinite
+ * where there is none. With H = K + s M, y^T H y = x^T M y = V theta V^T, and phi the
+ * eigenvalues of theta^-1/2 V^T (y^T M y) V theta^-1/2, lambda = 1/phi - s. */
+static mt_status find_lowest_ritz(sparse *s, int count, const double *x, double *y,
+                                  double *lowest, mt_err *err)
+{
+    const ptrdiff_t n = s->p->n;
+    double v[SUBSPACE * SUBSPACE] = {0.0};
+    double mass[SUBSPACE * SUBSPACE] = {0.0};
+    double turned[SUBSPACE * SUBSPACE] = {0.0};
+    double theta[SUBSPACE] = {0.0};
+    double phi[SUBSPACE] = {0.0};
+    *lowest = HUGE_VAL;
+    for (int c = 0; c < count; c++) {
+        sparse_metric(s, x + (n * c), s->f + (n * c));
+    }
+    MT_TRY(sparse_solve(s, count, s->f, ROUGHLY, y, err));
+    for (int c = 0; c < count; c++) {
+        sparse_metric(s, y + (n * c), s->w);
+        for (int r = 0; r < count; r++) {
+            v[r + (count * c)] = mt_dot((int)n, s->f + (n * r), y + (n * c));
+            mass[r + (count * c)] = mt_dot((int)n, s->w, y + (n * r));
+        }
+    }
+    MT_TRY(mt_eig_sym(count, v, theta, true, s->mem, err));
+    if (!(theta[0] > 0.0)) {
+        return MT_OK;
+    }
+    mt_gemm(false, false, count, count, count, 1.0, mass, count, v, count, 0.0, turned, count);
+    mt_gemm(true, false, count, count, count, 1.0, v, count, turned, count, 0.0, mass, count);
+    for (int c = 0; c < count; c++) {
+        for (int r = 0; r < count; r++) {
+            mass[r + (count * c)] /= sqrt(theta[r] * theta[c]);
+        }
+    }
+    MT_TRY(mt_eig_sym(count, mass, phi, false, s->mem, err));
+    for (int c = 0; c < count; c++) {
+        const double lambda = phi[c] > 0.0 ? (1.0 / phi[c]) - s->shift : HUGE_VAL;
+        *lowest = lambda > RESOLVED * s->shift ? fmin(*lowest, lambda) : *lowest;
+    }
+    return MT_OK;
+}
+
+/*
+ * Far above the lowest modes a shift leaves their 1/(lambda + s) so close together that
+ * Lanczos' method takes some (s/lambda)^(1/2) steps, and the largest K_ii/M_ii, of which the
+ * first shift is a part, grows with the fourth power of a ring's bodies. Each step of a
+ * subspace's iteration shows a lower lambda, which is the next shift.
+ */
+static mt_status lower_shift(sparse *s, mt_err *err)
+{
+    const size_t n = (size_t)s->p->n;
+    const int count = s->freedoms < SUBSPACE ? s->freedoms : SUBSPACE;
+    const mt_arena_mark mark = mt_arena_get_mark(s->mem);
+    double *x = mt_arena_f64(s->mem, n, (size_t)count);
+    double *y = mt_arena_f64(s->mem, n, (size_t)count);
+    uint32_t state = 1;
+    MT_TRY(mt_arena_check(s->mem, err));
+    for (size_t i = 0; i < n * (size_t)count; i++) {
+        state = (state * 1664525U) + 1013904223U;
+        x[i] = (((double)(state >> 8U) / 8388608.0) - 1.0) * s->p->unit[i % n];
+    }
+    bool on = orthonormalise(s, count, x);
+    for (int i = 0; i < LOWERINGS && on; i++) {
+        const double was = s->shift;
+        double lowest = HUGE_VAL;
+        MT_TRY(find_lowest_ritz(s, count, x, y, &lowest, err));
+        const bool above = was > NEAR_SHIFT * lowest;
+        const bool below = i > 0 && lowest < HUGE_VAL && was < LEAST_SHIFT * lowest;
+        on = (above || below) && orthonormalise(s, count, y);
+        if (on) {
+            MT_TRY(sparse_factor(s, lowest, &on, err));
+        }
+        if (!on && s->shift != was) {
+            bool sound = false;
+            s->blocked = s->shift;
+            MT_TRY(sparse_factor(s, was, &sound, err));
+        }
+        double *const swap = x;
+        x = y;
+        y = swap;
+    }
+    mt_arena_rewind(s->mem, mark);
+    return MT_OK;
+}
+
 static mt_status find_sparse_modes(sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *stable,
                                    mt_err *err)
 {
@@ -947,6 +1070,24 @@ static sparse sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem)
                     .outweigh = p->g != NULL && i >= OF_LOADED};
 }
 
+/* A stiffness of constraints that a high first shift asks for may be too much for the lower one
+ * that it led to: with that, from the least stiffness on. tried: of `s`, which keeps what it
+ * has where none is better. */
+static mt_status soften_constraints(const mt_sparse_problem *p, int tried, sparse *s,
+                                    mt_err *err)
+{
+    const sparse was = *s;
+    bool sound = was.blocked == 0.0;
+    for (int i = 0; i <= tried && !sound; i++) {
+        mt_arena_clear(was.mem);
+        *s = sparse_try(p, i, was.mem);
+        MT_TRY(sparse_prepare(s, err));
+        s->freedoms = was.freedoms;
+        MT_TRY(sparse_factor(s, i < tried ? was.blocked : was.shift, &sound, err));
+    }
+    return sound && s->stiffer < was.stiffer ? lower_shift(s, err) : MT_OK;
+}
+
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
                           double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err)
 {
@@ -957,12 +1098,18 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
     *out = (mt_lowest_modes){.below = 0};
     mt_status rc = mt_arena_init(&work, 0, err);
     bool more = true;
+    int tried = 0;
     for (int i = 0; i < sparse_tries(p) && rc == MT_OK && more; i++) {
         mt_arena_clear(&work);
+        tried = i;
         s = sparse_try(p, i, &work);
         rc = sparse_prepare(&s, err);
         rc = rc == MT_OK ? factor_stiffness(&s, answered, why, err) : rc;
         more = !*answered && s.stiffest > 0.0;
+    }
+    if (rc == MT_OK && *answered && s.shift > 0.0) {
+        rc = lower_shift(&s, err);
+        rc = rc == MT_OK ? soften_constraints(p, tried, &s, err) : rc;
     }
     if (rc == MT_OK && *answered) {
         rc = find_sparse_modes(&s, mem, out, answered, err);
