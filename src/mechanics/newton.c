@@ -424,16 +424,22 @@ static mt_status evaluate_with_multipliers(mt_newton_work *w, const mt_placement
     return MT_OK;
 }
 
-/* g + A^T lambda into w->reduced [nq]; returns its largest entry in scaled coordinates. */
-static double unbalanced(mt_newton_work *w, const mt_saddle *s)
+/* g + A^T lambda into w->reduced [nq]; returns its largest entry, moments over the model
+ * length. */
+static double unbalanced(mt_newton_work *w)
 {
-    const mt_layout *const o = w->sys->layout;
     double most = 0.0;
     memcpy(w->reduced, w->g, (size_t)w->sys->nq * sizeof *w->reduced);
     mt_lagrangian_pull(&w->sparse, w->p->m, w->lambda, w->reduced);
-    for (int j = 0; j < w->sys->nq; j++) {
-        const double force = fabs(s->d[o->state[j]] * w->reduced[j]);
-        most = !(force <= most) ? force : most; /* NaN is kept */
+    for (int b = 0; b < w->sys->n_bodies; b++) {
+        for (int k = 0; k < 6; k++) {
+            const int dof = w->sys->bodies[b].dof[k];
+            if (dof >= 0) {
+                const double scale = k < 3 ? 1.0 : 1.0 / w->sys->length_m;
+                const double force = fabs(scale * w->reduced[dof]);
+                most = !(force <= most) ? force : most; /* NaN is kept */
+            }
+        }
     }
     return most;
 }
@@ -478,7 +484,7 @@ static mt_status find_multipliers(mt_newton_work *w, bool first, mt_arena *mem, 
     for (int i = 0; i < m; i++) {
         w->lambda[i] = -w->lambda[i];
     }
-    set_residual_scales(w, &w->sparse, unbalanced(w, &least));
+    set_residual_scales(w, &w->sparse, unbalanced(w));
     return MT_OK;
 }
 
@@ -519,8 +525,8 @@ static mt_status newton_linearise_sparse(mt_newton_work *w, const mt_placement *
     if (!*sure) {
         return MT_OK;
     }
-    if (followed) { /* (not of soft ones, which are scaled otherwise) */
-        set_residual_scales(w, &w->sparse, unbalanced(w, &solver->saddle));
+    if (followed) {
+        set_residual_scales(w, &w->sparse, unbalanced(w));
     }
     for (int j = 0; j < nq; j++) {
         w->reduced[j] = -w->reduced[j];
@@ -945,7 +951,7 @@ static void stay_at_rest(mt_newton_work *w, const mt_newton_solver *solver)
 static void move_by_newton_step(mt_newton_work *w, mt_placement *at,
                                 const mt_newton_solver *solver)
 {
-    w->followed = solver->sparse && !w->p->sparse && w->moved <= FOLLOWS;
+    w->followed = solver->sparse && w->moved <= FOLLOWS;
     mt_newton_take_step(w, at, MT_STEP_LIMIT);
     newton_follow(w, at);
 }
