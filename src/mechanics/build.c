@@ -63,17 +63,14 @@ static int compare_vecs(const void *context, const void *key, int i)
 static int add_vec(mt_builder *b, const mt_vec_def *def)
 {
     mt_system *const sys = b->sys;
-    const int known = mt_sorted_find(&b->vec_order, compare_vecs, b, def);
-    if (known >= 0) {
-        return known;
-    }
     mt_vec_def *const grown = MT_BUILD_GROW(b, vecs);
     if (grown == NULL) {
         return 0;
     }
     sys->vecs = grown;
-    if (!mt_sorted_add(&b->vec_order, &sys->mem, compare_vecs, b, def)) {
-        return 0;
+    const int known = mt_sorted_put(&b->vec_order, &sys->mem, compare_vecs, b, def);
+    if (known != MT_SORTED_NEW) {
+        return known >= 0 ? known : 0;
     }
     sys->vecs[sys->n_vecs] = *def;
     return sys->n_vecs++;

@@ -95,7 +95,9 @@ mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l,
             value[e->row[o->state[j]] + o->state[j]] = 1.0;
         }
     } else {
-        memmove(value, l->h, e->count * sizeof *value);
+        if (value != l->h) {
+            memcpy(value, l->h, e->count * sizeof *value);
+        }
         out->scale = scale_hessian(e, out->d, value);
     }
     for (int i = 0; i < sys->n_constraints; i++) {

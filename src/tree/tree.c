@@ -1099,11 +1099,11 @@ static mt_status make_tree(tree_maker *m, const double *inputs, mt_arena *mem,
         MT_TRY(make_edges(m, mem, is_tree, err));
     }
     MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
-    if (*is_tree) {
-        MT_TRY(tree_masses(m, mem, is_tree, err));
-    }
     if (*is_tree && sys->loaded) {
         MT_TRY(tree_loads(m, mem, scratch, is_tree, err));
+    }
+    if (*is_tree) {
+        MT_TRY(tree_masses(m, mem, is_tree, err));
     }
     if (*is_tree) {
         MT_TRY(choose_coordinates(m, mem, is_tree, err));
