@@ -240,7 +240,10 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
     const mt_placement moving = {.pose = o->tangent, .turn = at->turn, .drive = at->drive};
     mt_relative_jet jet;
     memset(o->a, 0, (size_t)o->m * (size_t)o->nq * sizeof *o->a);
+    o->swing = 0.0;
     for (int i = 0; i < o->m; i++) {
+        double squares = 0.0;
+        double changes = 0.0;
         const mt_constraint_def *const c = &sys->constraints[i];
         double value = -creal(mt_data_target(d, i, at));
         o->rate[i] = 0.0;
@@ -257,12 +260,18 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
                     const double a = factor * creal(g);
                     o->a[i + ((ptrdiff_t)dof * o->m)] += a;
                     o->rate[i] += a * v[dof];
-                    o->b[i] -= factor * cx_derivative(g) * v[dof];
+                    const double slope = factor * cx_derivative(g);
+                    const double unit = k % 6 < 3 ? 1.0 : 1.0 / sys->length_m;
+                    o->b[i] -= slope * v[dof];
+                    squares += a * unit * a * unit;
+                    changes += slope * unit * slope * unit;
                 }
             }
         }
+        o->swing += squares > 0.0 ? changes / squares : 0.0;
         o->gap[i] = value - mt_constraint_turns(d, i, value);
     }
+    o->swing = sqrt(o->swing);
 }
 
 /* Springs and loads. The trimmed spring has its own force at the linearised position, and its

@@ -23,6 +23,7 @@ typedef struct mt_motion {
     double *gap;   /* [m] violation of each equation [m, rad, cosine] */
     double *rate;  /* [m] A v */
     double *damping; /* [nq] C v: forces on the dampers */
+    double swing;    /* Frobenius norm of dA/dt, rows of unit length, turns as arcs [1/s] */
     double potential;
     double kinetic; /* [J] */
     /* work */

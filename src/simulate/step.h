@@ -80,11 +80,13 @@ typedef struct mt_sim {
     double *lambda; /* [m] */
     double *weight; /* [nq] 1, or the model's length on rotations */
     double *speed;  /* [n_gauges] at the beginning of the step */
+    double *rows;   /* nq x (1 + n_gauges): forces of the inputs, rows of the gauges */
     mt_gauge_motion gauge;
-    double still;    /* drive of the rest position */
-    int rank;        /* rank of the joints' equations at the start; -1: not known yet */
-    mt_arena names;  /* names of joints, for messages */
-    double free_way; /* largest displacement in a step [rad, model lengths] */
+    double still;     /* drive of the rest position */
+    int rank;         /* rank of the joints' equations at the start; -1: not known yet */
+    mt_arena names;   /* names of joints, for messages */
+    double free_way;  /* largest displacement in a step [rad, model lengths] */
+    double free_time; /* a step as long as this is free of that limit [s] */
     long evaluations;
     double far;  /* largest displacement of a body so far [m] */
     double fast; /* largest speed of a body so far [m/s] */
@@ -95,7 +97,7 @@ typedef struct mt_sim {
 mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
                       const mt_sim_options *opt, mt_arena *mem, mt_err *err);
 void mt_sim_free(mt_sim *s);
-/* The mt_ode_slope of an mt_sim. */
+/* The mt_ode_slope of an mt_sim; s->rows are those there. */
 mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err *err);
 /* Allowed errors of a step h: of positions [m] and of velocities [m/s]. */
 void mt_sim_allowed(const mt_sim *s, double h, double out[2]);
@@ -114,7 +116,7 @@ void mt_sim_gauge_ahead(mt_sim *s, int gauge, double out[3]);
 /*
  * Integrals of waves times polynomials (Filon quadrature): with l_j Lagrange's polynomials
  * through Chebyshev points c_j of [0, 1], the ends among them,
- *     int_0^(c_i) cos(x (c_i - s)) l_j(s) ds, and the same of sin and of sin/x,
+ *     int_0^(c_i) cos(x (c_i - s)) l_j(s) ds, and the same of sin/x,
  * for any x >= 0.
  */
 enum { MT_FILON_DEGREE = 8, MT_FILON_POINTS = MT_FILON_DEGREE + 1, MT_FILON_GAUSS = 48 };
@@ -136,7 +138,6 @@ typedef struct mt_filon_weights {
     double c[MT_FILON_POINTS]; /* cos x c_i */
     double s[MT_FILON_POINTS];
     double nc[MT_FILON_POINTS * MT_FILON_POINTS];
-    double ns[MT_FILON_POINTS * MT_FILON_POINTS];
     double nd[MT_FILON_POINTS * MT_FILON_POINTS]; /* with sin/x */
 } mt_filon_weights;
 
@@ -154,5 +155,10 @@ void mt_filon_weigh(const mt_filon *q, double x, mt_filon_weights *w);
 /* Make s->collocation where the springs at s->base make the motion stiff. Fails: MT_E_MEMORY,
  * MT_E_NO_CONVERGENCE (eigenvalues), MT_E_DOMAIN. */
 mt_status mt_collocation_new(mt_sim *s, mt_err *err);
+/* The step of mt_sim_advance where there is s->collocation. s->stalls: its iteration does not
+ * converge, the step is too long. */
+mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err);
+/* After a step to t, which has moved s->base; nothing where there is no collocation. */
+void mt_collocation_accept(mt_sim *s, double t);
 
 #endif
