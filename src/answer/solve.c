@@ -576,7 +576,7 @@ static mt_status run_relaxations(answer *a, mt_err *err)
             ? mt_relaxation_catalogue(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
             : mt_relaxation_solve(a->workers, a->n_workers, &a->found,
                                   a->p->n_avoidances > 0 ? &a->placements : NULL,
-                                  a->q->neighbour != NULL ? &a->q->neighbour->known : NULL,
+                                  a->q->neighbour != NULL ? a->q->neighbour->known : NULL,
                                   &a->mem, &moves, err));
     if (a->q->moves != NULL) {
         MT_TRY(mt_moves_copy(&moves, a->p->n, a->q->moves_mem, a->q->moves, err));
@@ -1248,18 +1248,21 @@ static double search_accuracy(const mt_problem *p)
     return fmax(least, MT_MODAL_ACCURACY);
 }
 
-/* Beside a neighbour: the original design, the neighbour's, and one from afar. */
-enum { STARTS_AGREE = 3 };
+/* Beside a neighbour: the original design, the neighbour's, and one from afar; of what misses
+ * the goals least, where no design meets them, without that. */
+enum { STARTS_AGREE = 3, STARTS_OF_MISS = 2 };
 
 /* A workspace for each worker. */
 static mt_status open_workers(answer *a, int threads, mt_err *err)
 {
     const bool alone = threads < 1 || a->study->n_variables == 0;
     const int n = alone ? 1 : threads < MT_WORKERS_MOST ? threads : MT_WORKERS_MOST;
+    const mt_neighbour *const near = a->q->neighbour;
     a->asked = a->p->whole;
-    a->asked.search.agree =
-        a->q->neighbour != NULL && a->q->neighbour->alone ? STARTS_AGREE : 0;
-    a->asked.search.impossible = a->q->neighbour != NULL && a->q->neighbour->impossible;
+    a->asked.search.agree = near == NULL || !near->alone ? 0
+                            : near->impossible           ? STARTS_OF_MISS
+                                                         : STARTS_AGREE;
+    a->asked.search.impossible = near != NULL && near->impossible;
     a->workers = mt_arena_alloc(&a->mem, (size_t)n, sizeof(mt_workspace *));
     MT_TRY(mt_arena_check(&a->mem, err));
     for (int i = 0; i < n; i++) {

@@ -26,11 +26,11 @@ mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt
                               const mt_run *run, const mt_incumbent_callback *incumbent,
                               mt_result **out, mt_err *err);
 
-/* What is known of a study from one that differs in one number, by little. */
+/* What is known of a study from those that differ from it in one number, by little. */
 typedef struct mt_neighbour {
-    bool alone;           /* its starts found one design, or none */
-    bool impossible;      /* no design meets all goals: proven of one that asks for less */
-    mt_moves_known known; /* its relaxations */
+    bool alone;      /* the first one's starts found one design, or none */
+    bool impossible; /* no design meets all goals: proven of one that asks for less */
+    const mt_moves_known *known; /* their relaxations */
 } mt_neighbour;
 
 /*

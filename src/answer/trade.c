@@ -376,16 +376,18 @@ typedef struct point {
     long solutions; /* modal ones */
 } point;
 
-/* Points that are compiled at a time, beside a row of the grid: each has about a quarter of a
- * megabyte, or what its model needs. */
-enum { BLOCK = 75 };
+/* Points that are answered at a time, beside a row of the grid, where each is a task: each is
+ * kept compiled, in about a quarter of a megabyte, or what its model needs. Tiles that are
+ * answered at a time: of their points the answers alone are kept. */
+enum { BLOCK = 75, TILES = 16 };
 /* Evaluations beside one local search that asks whether a neighbour knows better; and without
  * which a point is not searched again. */
 enum { LOOKS = 3, WARM_LEAST = 30 };
 enum { WAYS = 4 }; /* neighbours of a point */
-/* Points of a line of the grid that one worker answers one after the other, each from what is
- * known of the one before: as many where that leaves so many tasks, or fewer. */
-enum { STRETCH_MOST = 5, STRETCHES_LEAST = 32 };
+/* Size of a tile of the grid, which one worker answers line by line, each point from what is
+ * known of the one before it and of the one in the line before: as many lines, and as many
+ * points of each, where that leaves so many tiles, or fewer. */
+enum { LINES_MOST = 5, STRETCH_MOST = 10, TILES_LEAST = 32 };
 
 typedef struct trade {
     const mt_study *study;
@@ -393,7 +395,8 @@ typedef struct trade {
     int n;
     int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
     int line;              /* points of a line, in which the last quantity varies */
-    int stretch;           /* points of a stretch */
+    int stretch;           /* points of a line of a tile */
+    int lines;             /* lines of a tile */
     int from;              /* point of the first task */
     int told;              /* points whose answers the result has; of others it is not known */
     mt_trade_result *out;
@@ -525,31 +528,60 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
-/* First point behind the stretch that begins at point k. */
-static int stretch_end(const trade *t, int k)
+/* Points of the tile that begins at point k: lines [row, row_end), places [at, end) in each. */
+typedef struct tile {
+    int row;
+    int row_end;
+    int at;
+    int end;
+} tile;
+
+static tile tile_at(const trade *t, int k)
 {
-    const int line_end = k - (k % t->line) + t->line;
-    return k + t->stretch < line_end ? k + t->stretch : line_end;
+    const int n_lines = t->n / t->line;
+    const tile of = {.row = k / t->line, .at = k % t->line};
+    const int row_end = of.row + t->lines;
+    const int end = of.at + t->stretch;
+    return (tile){of.row, row_end < n_lines ? row_end : n_lines, of.at,
+                  end < t->line ? end : t->line};
 }
 
-/* First point of task `task` of those from t->from on. */
-static int stretch_of(const trade *t, int task)
+/* Tiles that share their lines. */
+static int tiles_of_lines(const trade *t)
 {
-    int k = t->from;
-    for (int i = 0; i < task; i++) {
-        k = stretch_end(t, k);
-    }
-    return k;
+    return (t->line + t->stretch - 1) / t->stretch;
 }
 
-/* True where designs of point k + 1 are designs of point k: what varies between them only takes
- * designs away. */
-static bool only_takes_away(const trade *t, int k)
+/* First point of task `task` of those from t->from on, which begins a line of tiles. */
+static int tile_of(const trade *t, int task)
 {
-    const int i = t->study->trade.n_vary - 1;
-    const mt_vary *const v = &t->study->trade.vary[i];
-    const double from = t->points[k].values[i];
-    const double to = t->points[k + 1].values[i];
+    const int each = tiles_of_lines(t);
+    return t->from + (task / each * t->lines * t->line) + (task % each * t->stretch);
+}
+
+/* Point of which point k uses what is known: the one before it (axis 1) or in the line before
+ * it (axis 0) in the same tile; -1: there is none. */
+static int before_in_tile(const trade *t, int k, int axis)
+{
+    const bool inner =
+        axis == 1 ? (k % t->line) % t->stretch > 0 : (k / t->line) % t->lines > 0;
+    return !inner ? -1 : axis == 1 ? k - 1 : k - t->line;
+}
+
+/* Number that varies along an axis of a grid of lines: 1 along a line. */
+static const mt_vary *varied(const trade *t, int axis)
+{
+    return &t->study->trade.vary[axis == 1 ? t->study->trade.n_vary - 1 : 0];
+}
+
+/* True where designs of point k are designs of the point before it along an axis: what varies
+ * between them only takes designs away. */
+static bool only_takes_away(const trade *t, int before, int k, int axis)
+{
+    const mt_vary *const v = varied(t, axis);
+    const int i = axis == 1 ? t->study->trade.n_vary - 1 : 0;
+    const double from = t->points[before].values[i];
+    const double to = t->points[k].values[i];
     switch (v->kind) {
     case MT_VARY_BOUND:
         return v->upper ? to <= from : to >= from;
@@ -580,41 +612,56 @@ static mt_status solve_point(const trade *t, int k, const mt_neighbour *near,
         p->q->moves = NULL;
     }
     note_work_counters(p, 1);
-    if (rc != MT_OK || !t->warm) {
+    if (rc != MT_OK || !t->warm || t->lines * t->stretch > 1) {
         forget(p);
     }
     return told(t, k, rc, err);
 }
 
-/* The points of a stretch, in order. */
-static mt_status solve_stretch(const trade *t, int first, mt_arena *mem, mt_task_path *own,
-                               mt_err *err)
+/* Point k of a tile, from what is known of those before it. moves: of each place of the line,
+ * its last point's so far. */
+static mt_status solve_in_tile(const trade *t, int k, mt_moves *moves, mt_arena *mem,
+                               mt_task_path *own, mt_err *err)
 {
-    const mt_trade *const asked = &t->study->trade;
-    const int end = stretch_end(t, first);
-    mt_moves moves = {0};
-    for (int k = first; k < end && !stopped(t); k++) {
-        const mt_moves known = moves;
-        const mt_result *const last = k > first ? t->points[k - 1].first : NULL;
+    mt_moves known[MT_MAX_VARY] = {{0}};
+    mt_moves_known chain[MT_MAX_VARY];
+    const mt_result *from = NULL;
+    mt_neighbour near = {0};
+    for (int axis = 1; axis >= 0; axis--) {
+        const int before = before_in_tile(t, k, axis);
+        const mt_result *const last = before >= 0 ? t->points[before].first : NULL;
         const bool none = last != NULL && last->status == MT_RESULT_INFEASIBLE;
-        const mt_neighbour near = {.alone = last != NULL && last->run.distinct_designs <= 1,
-                                   .impossible = none && only_takes_away(t, k - 1),
-                                   .known = {&known, &asked->vary[asked->n_vary - 1]}};
-        const double *x = NULL;
-        moves = (mt_moves){0};
-        MT_TRY(values_of(best_recommendation(last), mem, &x, err));
-        MT_TRY(solve_point(t, k, x != NULL ? &near : NULL, x, &moves, mem, own, err));
+        if (best_recommendation(last) == NULL) {
+            continue;
+        }
+        const bool looser = only_takes_away(t, before, k, axis);
+        near.impossible = near.impossible || (none && looser);
+        known[axis] = moves[before % t->line];
+        chain[axis] = (mt_moves_known){&known[axis], varied(t, axis), looser, near.known};
+        near.known = &chain[axis];
+        from = from != NULL ? from : last;
     }
-    return MT_OK;
+    near.alone = from != NULL && from->run.distinct_designs <= 1;
+    const double *x = NULL;
+    moves[k % t->line] = (mt_moves){0};
+    MT_TRY(values_of(best_recommendation(from), mem, &x, err));
+    return solve_point(t, k, x != NULL ? &near : NULL, x, &moves[k % t->line], mem, own, err);
 }
 
 static mt_status solve_cold(void *context, int worker, int task, mt_task_path *own, mt_err *err)
 {
     const trade *const t = context;
+    const tile of = tile_at(t, tile_of(t, task));
     mt_arena mem;
     (void)worker;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_status rc = solve_stretch(t, stretch_of(t, task), &mem, own, err);
+    mt_moves *const moves = mt_arena_alloc(&mem, (size_t)t->line, sizeof *moves);
+    mt_status rc = mt_arena_check(&mem, err);
+    for (int row = of.row; row < of.row_end; row++) {
+        for (int at = of.at; at < of.end && rc == MT_OK && !stopped(t); at++) {
+            rc = solve_in_tile(t, (row * t->line) + at, moves, &mem, own, err);
+        }
+    }
     mt_arena_free(&mem);
     return rc;
 }
@@ -634,9 +681,9 @@ static int neighbour(const trade *t, int k, int way)
 static const double *neighbour_design(const trade *t, int k, int way)
 {
     const int other = neighbour(t, k, way);
-    const int before = 2 * (t->study->trade.n_vary - 1);
-    const bool begun = way == before && (k % t->line) % t->stretch > 0;
-    return other < 0 || begun ? NULL : t->points[other].near;
+    const int left = before_in_tile(t, k, 1);
+    const int begun = left >= 0 ? left : before_in_tile(t, k, 0);
+    return other < 0 || other == begun ? NULL : t->points[other].near;
 }
 
 /* True where a is the better answer of one point, by more than searches differ. Among feasible
@@ -794,13 +841,15 @@ static void serialize_point(const trade *t, int k, bool warm, mt_serializer *ser
 static void serialize_cold(void *context, int task, mt_serializer *serializer)
 {
     const trade *const t = context;
-    const int first = stretch_of(t, task);
-    const int end = stretch_end(t, first);
-    for (int k = first; k < end && !serializer->failed; k++) {
+    const tile of = tile_at(t, tile_of(t, task));
+    const int width = of.end - of.at;
+    const int n = (of.row_end - of.row) * width;
+    for (int i = 0; i < n && !serializer->failed; i++) {
+        const int k = ((of.row + (i / width)) * t->line) + of.at + (i % width);
         serialize_point(t, k, false, serializer);
     }
-    for (int k = first; k < end && serializer->reads && !mt_serializer_is_read(serializer);
-         k++) {
+    for (int i = 0; i < n && serializer->reads && !mt_serializer_is_read(serializer); i++) {
+        const int k = ((of.row + (i / width)) * t->line) + of.at + (i % width);
         point *const p = &t->points[k];
         mt_result_delete(p->first);
         *p = (point){.values = {p->values[0], p->values[1]}};
@@ -871,6 +920,11 @@ static bool may_begin_from_others(const trade *t)
            search->max_evaluations <= 0 && search->max_modal_solutions <= 0;
 }
 
+static int limited(int n, int most)
+{
+    return n < 1 ? 1 : n < most ? n : most;
+}
+
 static mt_status allocate_trade_points(trade *t, mt_err *err)
 {
     const mt_trade *const asked = &t->study->trade;
@@ -879,9 +933,10 @@ static mt_status allocate_trade_points(trade *t, mt_err *err)
         t->size[i] = i < asked->n_vary ? asked->vary[i].n_values : 1;
         t->n *= t->size[i];
     }
-    const int share = may_begin_from_others(t) ? t->n / STRETCHES_LEAST : 1;
+    const int share = may_begin_from_others(t) ? t->n / TILES_LEAST : 1;
     t->line = t->size[asked->n_vary - 1];
-    t->stretch = share < 1 ? 1 : share < STRETCH_MOST ? share : STRETCH_MOST;
+    t->lines = asked->n_vary > 1 ? limited((int)sqrt((double)share), LINES_MOST) : 1;
+    t->stretch = limited(share / t->lines, STRETCH_MOST);
     t->points = mt_arena_alloc(t->mem, (size_t)t->n, sizeof *t->points);
     t->best = mt_arena_alloc(t->mem, (size_t)t->n, sizeof(const mt_recommendation *));
     t->out = mt_arena_alloc(t->kept, 1, sizeof *t->out);
@@ -979,15 +1034,17 @@ static mt_status solve_all(trade *t, int threads, const mt_task_path *task_path,
     mt_task_path again = mt_task_path_enter(task_path, "again");
     mt_status part = MT_OK;
     int ready = 0;
+    const bool tiles = t->lines * t->stretch > 1;
+    const int each = tiles ? tiles_of_lines(t) : 1;
+    const int size = tiles ? t->lines * t->line : 1; /* points of them */
+    const int most = tiles ? (TILES + each - 1) / each : BLOCK;
     for (int known = 0; known < t->n;) {
-        int runs = 0;
-        int to = known;
-        for (; to < t->n && (runs == 0 || stretch_end(t, to) - known <= BLOCK); runs++) {
-            to = stretch_end(t, to);
-        }
+        const int left = (t->n - known + size - 1) / size;
+        const int runs = left < most ? left : most;
+        const int to = runs < left ? known + (runs * size) : t->n;
         t->from = known;
-        const mt_tasks cold = {runs, solve_cold, serialize_cold, t,
-                               t->stretch > 1 ? "stretches of points" : "points"};
+        const mt_tasks cold = {runs * each, solve_cold, serialize_cold, t,
+                               tiles ? "stretches of points" : "points"};
         const mt_status rc = mt_workers_run(threads, &first, &cold, err);
         MT_TRY(rc == MT_E_INTERRUPTED ? MT_OK : rc);
         part = rc == MT_OK ? part : rc;

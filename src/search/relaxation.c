@@ -113,7 +113,9 @@ static mt_status relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_move
         out->items[i].x = mt_arena_f64(mem, (size_t)p->n, 1);
         MT_TRY(mt_arena_check(mem, err));
     }
-    return MT_OK;
+    out->n_listed = out->n;
+    out->useless = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->useless);
+    return mt_arena_check(mem, err);
 }
 
 /* A bound moves by a factor of ten at most, or by the range where its sign may change; a bound
@@ -260,6 +262,11 @@ mt_status mt_moves_copy(const mt_moves *from, int n_variables, mt_arena *mem, mt
         out->items[i].x = mt_arena_f64(mem, n, 1);
         MT_TRY(mt_arena_check(mem, err));
         memcpy(out->items[i].x, from->items[i].x, n * sizeof(double));
+    }
+    out->useless = mt_arena_alloc(mem, (size_t)from->n_listed, sizeof *out->useless);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < from->n_listed; i++) {
+        out->useless[i] = from->useless[i];
     }
     return MT_OK;
 }
@@ -461,7 +468,7 @@ typedef struct job {
     const mt_subproblem *c;
     mt_moves *moves;
     const double *near;
-    const mt_moves_known *known; /* of another study, or NULL */
+    const mt_moves_known *known; /* of other studies, or NULL */
     bool sizes; /* of each move how far is sought alone: the least one's design comes after */
     near_misses misses;
     mt_mode_placement_candidates assignments; /* to look into for moves of no bound */
@@ -701,10 +708,10 @@ static mt_status search_least_change(mt_nlp nlp, mt_nlp_options opt, const doubl
     return MT_OK;
 }
 
-/* The move of the same number that the other study has; NULL: it has none. */
+/* The move of the same number that another study has; NULL: it has none. */
 static const mt_move *find_known_move(const mt_moves_known *known, const mt_move *m)
 {
-    for (int i = 0; known != NULL && i < known->moves->n; i++) {
+    for (int i = 0; i < known->moves->n; i++) {
         const mt_move *const k = &known->moves->items[i];
         if (k->kind == m->kind && k->upper == m->upper && k->variable == m->variable &&
             k->avoidance == m->avoidance && k->band == m->band &&
@@ -801,7 +808,9 @@ static mt_status search_in(const job *j, mt_subproblem *c, mt_workspace *w, mt_m
 {
     mt_arena *const mem = &out->mem;
     answer a = {.mem = mem, .near = near, .x = mt_arena_f64(mem, (size_t)c->p->n, 1)};
-    a.known = c->p->n_avoidances == 0 ? find_known_move(j->known, m) : NULL;
+    for (const mt_moves_known *o = j->known; o != NULL && a.known == NULL; o = o->next) {
+        a.known = c->p->n_avoidances == 0 ? find_known_move(o, m) : NULL;
+    }
     bool again = true;
     MT_TRY(mt_arena_check(mem, err));
     mt_status rc = search_once(j, c, w, m, out, &a, &again, err);
@@ -869,12 +878,11 @@ static mt_status is_useless(const job *j, const mt_subproblem *c, const mt_move 
 
 /* True where the studies differ in nothing but the number that moves: what remains without it
  * is the same. */
-static bool is_the_difference(const job *j, const mt_move *m)
+static bool is_the_difference(const job *j, const mt_vary *v, const mt_move *m)
 {
     const mt_problem *const p = j->c->p;
-    const mt_vary *const v = j->known != NULL ? j->known->number : NULL;
     int of_goal = 0;
-    if (v == NULL || v->kind != MT_VARY_GOAL || m->kind != MT_MOVE_GOAL || m->target ||
+    if (v->kind != MT_VARY_GOAL || m->kind != MT_MOVE_GOAL || m->target ||
         v->slot != (m->upper ? MT_SLOT_AT_MOST : MT_SLOT_AT_LEAST) ||
         measure_of(p, m) != MT_MEASURE_RATIO) {
         return false;
@@ -906,20 +914,32 @@ static mt_status take_known(mt_workspace *w, const mt_move *known, mt_move *m, t
     return MT_OK;
 }
 
+/* True where the move is useless in a study that has all designs of this one, however far it
+ * goes from where its number is there. */
+static bool is_known_useless(const mt_moves_known *o, const mt_move *m)
+{
+    const mt_vary *const v = o->number;
+    const bool own = v->kind == MT_VARY_BOUND && m->kind == MT_MOVE_BOUND;
+    return o->looser && !own && m->order < o->moves->n_listed && o->moves->useless[m->order];
+}
+
 /* Searches move k for the study's rows, which w is set to. */
 static mt_status search_useful(const job *j, mt_subproblem *c, mt_workspace *w, int k,
                                task_result *out, mt_err *err)
 {
     mt_move *const m = &j->moves->items[k];
-    const mt_move *const known = j->sizes ? find_known_move(j->known, m) : NULL;
-    bool useless = false;
-    if (known != NULL && is_the_difference(j, m)) {
-        MT_TRY(take_known(w, known, m, out, err));
+    bool *const useless = &j->moves->useless[k];
+    for (const mt_moves_known *o = j->known; o != NULL && j->sizes && !m->found; o = o->next) {
+        const mt_move *const known = find_known_move(o, m);
+        if (known != NULL && is_the_difference(j, o->number, m)) {
+            MT_TRY(take_known(w, known, m, out, err));
+        }
+        *useless = *useless || is_known_useless(o, m);
     }
-    if (!m->found) {
-        MT_TRY(is_useless(j, c, m, &out->mem, &useless, err));
+    if (!m->found && !*useless) {
+        MT_TRY(is_useless(j, c, m, &out->mem, useless, err));
     }
-    if (m->found || useless) {
+    if (m->found || *useless) {
         return MT_OK;
     }
     return w->p->n_avoidances > 0 ? search_placements(j, c, w, k, out, err)

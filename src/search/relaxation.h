@@ -51,6 +51,8 @@ typedef struct mt_move {
 typedef struct mt_moves {
     int n; /* found, smallest first */
     mt_move *items;
+    bool *useless; /* [by order] proven: no design within reach of the move meets the rest */
+    int n_listed;
     long evals;
     int starts;
     bool short_of_budget; /* the study's budget is too small: none was tried */
@@ -60,7 +62,9 @@ typedef struct mt_moves {
 /* Moves of a study that differs in one number. */
 typedef struct mt_moves_known {
     const mt_moves *moves;
-    const mt_vary *number; /* that one */
+    const mt_vary *number;             /* that one */
+    bool looser;                       /* every design of this study is one of that */
+    const struct mt_moves_known *next; /* of a further study; NULL: there is none */
 } mt_moves_known;
 
 /* out: the moves in mem. Fails: MT_E_MEMORY. */
@@ -74,7 +78,7 @@ mt_status mt_moves_copy(const mt_moves *from, int n_variables, mt_arena *mem, mt
  * @param[in]  search      result of the search (starts from its compromise, where it has one)
  *   and evaluations used of the study's budget
  * @param[in]  placements  its mode placements, or NULL
- * @param[in]  known       moves of a study that differs by little in one number, or NULL: where
+ * @param[in]  known       moves of studies that differ by little in one number, or NULL: where
  *   there are no bands, a move that it has, too, is searched from its design, and from other
  *   starts only where that search does not end at a local minimum; where that one number moves,
  *   both have the same designs, and nothing is searched

@@ -159,6 +159,66 @@ static void trade__points_in_a_row_are_studies_of_their_own(mt_test *t)
     study_free(&all);
 }
 
+/* The same of a grid in which both numbers take designs away, one along its lines, the other
+ * across them. */
+static void trade__points_of_a_grid_are_studies_of_their_own(mt_test *t)
+{
+#define GRID_OF(least, most)                                                                \
+    "'objective': {'minimise': 'change'}, 'recommendations': 1, 'variables': [{'parameter'" \
+    ": 'k1', 'lower': 0.5, 'upper': 2}, {'parameter': 'k2', 'lower': 0.5, 'upper': 2}], "   \
+    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': " least                      \
+    "}, {'type': 'frequency', 'mode': 2, 'at_most_hz': " most "}]"
+    enum { SIDE = 18, STEP = 11, ROOM = 8192 };
+    char text[ROOM];
+    study_case all;
+    long own = 0;
+    int n_own = 0;
+    int at = snprintf(text, sizeof text,
+                      GRID_OF("0.1", "0.25") ", 'trade': {'vary': [{'goal': 1, 'member': "
+                                             "'at_most_hz', 'values': [");
+    for (int k = 0; k < SIDE; k++) {
+        at += snprintf(text + at, sizeof text - (size_t)at, "%s%.17g", k > 0 ? ", " : "",
+                       0.27 - (0.002 * k));
+    }
+    at += snprintf(text + at, sizeof text - (size_t)at,
+                   "]}, {'goal': 0, 'member': 'at_least_hz', 'values': [");
+    for (int k = 0; k < SIDE; k++) {
+        at += snprintf(text + at, sizeof text - (size_t)at, "%s%.17g", k > 0 ? ", " : "",
+                       0.095 + (0.001 * k));
+    }
+    (void)snprintf(text + at, sizeof text - (size_t)at, "]}]}");
+    if (!study_solve(t, MODEL, text, &all) ||
+        !CHECK_INT(t, all.result->trade->n_points, SIDE * SIDE)) {
+        study_free(&all);
+        return;
+    }
+    int statuses[2] = {0};
+    for (int k = 5; k < SIDE * SIDE; k += STEP) {
+        const mt_trade_point *const point = &all.result->trade->points[k];
+        study_case one;
+        mt_test_row(t, "point %d", k);
+        (void)snprintf(text, sizeof text, GRID_OF("%.17g", "%.17g"), point->values[1],
+                       point->values[0]);
+        if (study_solve(t, MODEL, text, &one) && CHECK(t, one.result->n_recommendations > 0)) {
+            const mt_recommendation *const best = &one.result->recommendations[0];
+            CHECK_INT(t, point->status, one.result->status);
+            CHECK_STR(t, point->status_text, one.result->status_text);
+            CHECK_NEAR(t, point->best.change, best->change, 1e-6);
+            CHECK_NEAR(t, 1.0 + point->best.violation_percent, 1.0 + best->violation_percent,
+                       1e-6);
+            CHECK(t, point->best.feasible == best->feasible);
+            statuses[best->feasible ? 1 : 0]++;
+            own += one.result->run.evaluations;
+            n_own++;
+        }
+        study_free(&one);
+    }
+    CHECK(t, statuses[0] >= 8 && statuses[1] >= 8);
+    CHECK(t, 5 * all.result->run.spent.trade * n_own < 2 * own * SIDE * SIDE);
+    study_free(&all);
+}
+
 MT_TEST_MAIN(MT_TEST(hint__is_one_more_start), MT_TEST(trade__a_neighbour_improves_a_point),
              MT_TEST(trade__starts_of_a_point_end_where_all_agree),
-             MT_TEST(trade__points_in_a_row_are_studies_of_their_own))
+             MT_TEST(trade__points_in_a_row_are_studies_of_their_own),
+             MT_TEST(trade__points_of_a_grid_are_studies_of_their_own))

@@ -42,7 +42,7 @@ def frequency(mode, hz):
 AVOID = {"type": "avoid", "configurations": ["held"], "bands_hz": [[0.25, 0.3], [0.5, 0.6]], "up_to_hz": 1}
 MANY = [5.0, 8.0, 9.0, 10.0, 11.0, 12.0, 14.0, 20.0, 30.0]
 # One of every way that work is shared: starts, gap assignments, combinations with and without a search, boxes of them, relaxations,
-# trade points one by one and in stretches.
+# trade points one by one, in stretches and in tiles of a grid.
 STUDIES = {
     "starts": {"variables": variables(8), "goals": [frequency(1, 0.1), frequency(2, 0.33)], "search": {"starts": 60}},
     "gaps": {"variables": variables(4), "goals": [AVOID], "search": {"starts": 6}},
@@ -54,6 +54,10 @@ STUDIES = {
               "trade": {"vary": [{"parameter": "k7", "values": [2.0 + i for i in range(24)]}]}},
     "stretches": {"variables": variables(2), "goals": [{"type": "frequency", "configuration": "held", "mode": 1, "at_least_hz": 0.1}],
                   "trade": {"vary": [{"goal": 0, "member": "at_least_hz", "values": [0.1 + 0.0001 * i for i in range(136)]}]}},
+    "tiles": {"variables": variables(2), "goals": [{"type": "frequency", "configuration": "held", "mode": 1, "at_least_hz": 0.1},
+                                                   {"type": "frequency", "configuration": "held", "mode": 8, "at_most_hz": 1}],
+              "trade": {"vary": [{"goal": 0, "member": "at_least_hz", "values": [0.1 + 0.002 * i for i in range(16)]},
+                                 {"goal": 1, "member": "at_most_hz", "values": [1.1 - 0.02 * i for i in range(13)]}]}},
 }
 
 
