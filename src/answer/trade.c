@@ -676,14 +676,32 @@ static int neighbour(const trade *t, int k, int way)
     return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
 }
 
-/* Best design of neighbour `way` of point k in the first pass; NULL where there is none, or k
- * was searched from it. */
+/* True where two designs differ by at most `part` of each value. */
+static bool are_alike(int n, const double *x, const double *y, double part)
+{
+    bool alike = true;
+    for (int i = 0; i < n && alike; i++) {
+        alike = fabs(x[i] - y[i]) <= part * fabs(y[i]);
+    }
+    return alike;
+}
+
+/* A search from a design as near to the point's own best as this, of each value, ends there:
+ * valleys of different optima lie farther apart. */
+static const double LEADS_BACK = 0.01;
+
+/* Best design of neighbour `way` of point k in the first pass; NULL where there is none, k was
+ * searched from it, or it leads back to k's own. */
 static const double *neighbour_design(const trade *t, int k, int way)
 {
     const int other = neighbour(t, k, way);
     const int left = before_in_tile(t, k, 1);
     const int begun = left >= 0 ? left : before_in_tile(t, k, 0);
-    return other < 0 || other == begun ? NULL : t->points[other].near;
+    const double *const x = other < 0 || other == begun ? NULL : t->points[other].near;
+    const double *const own = t->points[k].near;
+    const bool back =
+        x != NULL && own != NULL && are_alike(t->study->n_variables, x, own, LEADS_BACK);
+    return back ? NULL : x;
 }
 
 /* True where a is the better answer of one point, by more than searches differ. Among feasible
@@ -714,10 +732,7 @@ static bool is_tried(const point *p, int n, const double *const tried[WAYS], con
     static const double ROUNDING = 1e-10;
     bool found = false;
     for (int k = 0; k < n && !found; k++) {
-        found = tried[k] != NULL;
-        for (int i = 0; i < p->q->p->n && found; i++) {
-            found = fabs(tried[k][i] - x[i]) <= ROUNDING * fabs(x[i]);
-        }
+        found = tried[k] != NULL && are_alike(p->q->p->n, tried[k], x, ROUNDING);
     }
     return found;
 }
