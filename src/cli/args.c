@@ -25,6 +25,7 @@
 #define ON_MODELS                                                                         \
     (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO) | \
      BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SHOW) | BIT(MT_CMD_SIMULATE))
+#define ONE_FILE   (BIT(MT_CMD_SHOW) | BIT(MT_CMD_APPLY) | BIT(MT_CMD_SCHEMA))
 #define SOLVES     (BIT(MT_CMD_RUN) | BIT(MT_CMD_MERGE))
 #define ON_STUDIES (SOLVES | BIT(MT_CMD_COMPARE))
 
@@ -67,7 +68,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_HOLD, '\0', "hold", "SPRING", BIT(MT_CMD_SWEEP),
            "re-adjust this spring so that it holds the joint at each position (default: the "
            "joint is locked)"),
-    OPTION(MT_OPT_MODES, '\0', "modes", NULL, BIT(MT_CMD_SWEEP),
+    OPTION(MT_OPT_FREQUENCIES, '\0', "frequencies", NULL, BIT(MT_CMD_SWEEP),
            "natural frequencies at each position"),
     OPTION(MT_OPT_SVG, '\0', "svg", NULL, BIT(MT_CMD_SHOW),
            "one still picture of one configuration (default: the first), as SVG"),
@@ -79,7 +80,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
              "the excitation: grip.x, the force (grip.rx: moment) along a direction of a "
              "sensor, or base.x, the acceleration of the ground (base.x:displacement, "
              "base.x:velocity); may be repeated"),
-    REPEATED(MT_OPT_SEEN, "output", "PORT", BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SIMULATE),
+    REPEATED(MT_OPT_MEASURE, "measure", "PORT", BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SIMULATE),
              "the quantity to print: grip.x, grip.x:velocity, grip.x:acceleration, the motion "
              "of a sensor; may be repeated (default: the displacements of all sensors). "
              "`response` measures motion in space (grip.x:relative_acceleration: against the "
@@ -135,7 +136,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
              "second: its second body against its first. Of all motions with these velocities "
              "the one of least kinetic energy is taken, so the lighter of two free bodies "
              "moves more (backwards if it is the first); may be repeated"),
-    OPTION(MT_OPT_ALONG, '\0', "mode", "N:AMPLITUDE", BIT(MT_CMD_SIMULATE),
+    OPTION(MT_OPT_START_MODE, '\0', "start-mode", "N:AMPLITUDE", BIT(MT_CMD_SIMULATE),
            "start at rest, displaced along vibration mode N by this amplitude at the sensor "
            "that moves most (m, rad if sensors show rotations alone, or the model's units)"),
     REPEATED(
@@ -148,7 +149,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
              "a sine there, in the model's units for a joint or a displacement of the ground; "
              "may be repeated. With a single frequency, the steady motion is read from the "
              "last periods"),
-    REPEATED(MT_OPT_CHIRP, "sweep", "PORT=LEVEL@FROM:TO", BIT(MT_CMD_SIMULATE),
+    REPEATED(MT_OPT_SINE_SWEEP, "sine-sweep", "PORT=LEVEL@FROM:TO", BIT(MT_CMD_SIMULATE),
              "a sine of this amplitude there whose frequency runs from FROM to TO Hz over the "
              "duration at a constant rate in octaves a second (\":linear\" behind it: in Hz a "
              "second)"),
@@ -162,10 +163,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "integrate the equations of motion also where they are linear at any amplitude and "
            "are solved without"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
-           SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES) | BIT(MT_CMD_SHOW),
-           "folder for the results (default: of run and merge `results`, of examples the "
-           "current folder, of report none: nothing is written); of show: the file to write "
-           "instead of standard output"),
+           SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES),
+           "the folder to write to (default: of run and merge `results`, of examples the "
+           "current folder, of report none: nothing is written)"),
+    OPTION(MT_OPT_FILE, 'o', "output", "FILE", ONE_FILE,
+           "the file to write instead of standard output, completely or not at all"),
     OPTION(MT_OPT_VERIFY, '\0', "verify", NULL, SOLVES | BIT(MT_CMD_REPORT),
            "compare the study's published values too; in run and merge they alone decide the "
            "exit status"),
@@ -198,7 +200,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_REDO, '\0', "redo", NULL, BIT(MT_CMD_MERGE),
            "repeat the tasks of journals from processors that round differently; without it "
            "they are refused"),
-    OPTION(MT_OPT_PROFILE, '\0', "profile", NULL, SOLVES | BIT(MT_CMD_MODES),
+    OPTION(MT_OPT_TIMING, '\0', "timing", NULL, SOLVES | BIT(MT_CMD_MODES),
            "print on standard error how often each stage of the evaluations was done or "
            "skipped, and the seconds of all workers"),
     OPTION(MT_OPT_PROGRESS, '\0', "progress", "auto|line|json|none",
@@ -236,8 +238,8 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "files that other files name must lie below DIR (default: the parent of the folder "
            "of the naming file; of a result, of its study's)"),
     OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", MT_ALL_COMMANDS,
-           "form of standard output (default: text); report also has html, check sarif; show "
-           "has html (its default) and json, apply text and json, help text"),
+           "form of standard output (default: text, of show html); some commands have fewer, "
+           "report html, too, check sarif"),
     OPTION(MT_OPT_QUIET, '\0', "quiet", NULL, MT_ALL_COMMANDS,
            "no messages on standard error; errors and warnings stay"),
     OPTION(MT_OPT_HELP, 'h', "help", NULL, MT_ALL_COMMANDS,
@@ -288,10 +290,98 @@ static bool takes(int command, int option)
            option == MT_OPT_MANUAL;
 }
 
+/* The option of the command that is called so; MT_OPT_NONE: none. */
+static int find_option(int command, const char *name, size_t length)
+{
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (strlen(mt_options[i].name) == length &&
+            strncmp(name, mt_options[i].name, length) == 0 && takes(command, i)) {
+            return i;
+        }
+    }
+    return MT_OPT_NONE;
+}
+
+/* Names of options before version 1.0, each of which meant something else elsewhere. */
+static const struct {
+    const char *name;
+    unsigned commands;
+    mt_option_id now;
+} former[] = {
+    {"output", BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SIMULATE), MT_OPT_MEASURE},
+    {"modes", BIT(MT_CMD_SWEEP), MT_OPT_FREQUENCIES},
+    {"mode", BIT(MT_CMD_SIMULATE), MT_OPT_START_MODE},
+    {"sweep", BIT(MT_CMD_SIMULATE), MT_OPT_SINE_SWEEP},
+    {"profile", SOLVES | BIT(MT_CMD_MODES), MT_OPT_TIMING},
+};
+
+/* The option that the command called so before; MT_OPT_NONE: none. */
+static int find_former(int command, const char *name, size_t length)
+{
+    for (int i = 0; i < MT_COUNT(former) && command != MT_CMD_NONE; i++) {
+        if (strlen(former[i].name) == length && strncmp(name, former[i].name, length) == 0 &&
+            (former[i].commands & BIT(command)) != 0U) {
+            return (int)former[i].now;
+        }
+    }
+    return MT_OPT_NONE;
+}
+
+/* A word of a command line, quoted where a shell would read it otherwise. */
+static void add_shell_word(const char *word, size_t length, mt_text *out)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                "0123456789_./:=,@%+-";
+    const bool quoted = length == 0 || strspn(word, plain) < length;
+    mt_text_add(out, quoted ? "'" : "");
+    for (size_t i = 0; i < length; i++) {
+        if (word[i] == '\'') {
+            mt_text_add(out, "'\\''");
+        } else {
+            mt_text_add_n(out, word + i, 1);
+        }
+    }
+    mt_text_add(out, quoted ? "'" : "");
+}
+
+/* The command line, as a shell reads it, with the present names of options that had others
+ * before. */
+static void renew_line(int argc, char *const argv[], int command, mt_text *out)
+{
+    bool operands_only = false;
+    mt_text_add(out, "modetune");
+    for (int i = 1; i < argc; i++) {
+        const char *const word = argv[i];
+        const bool is_long = !operands_only && strncmp(word, "--", 2) == 0 && word[2] != '\0';
+        const char *const name = is_long ? word + 2 : word;
+        const size_t length = is_long ? strcspn(name, "=") : 0;
+        const int renamed = is_long ? find_former(command, name, length) : MT_OPT_NONE;
+        const int known =
+            renamed == MT_OPT_NONE && is_long ? find_option(command, name, length) : renamed;
+        operands_only = operands_only || strcmp(word, "--") == 0;
+        mt_text_add(out, " ");
+        if (renamed == MT_OPT_NONE) {
+            add_shell_word(word, strlen(word), out);
+        } else {
+            mt_text_addf(out, "--%s", mt_options[renamed].name);
+            if (name[length] != '\0') {
+                add_shell_word(name + length, strlen(name + length), out);
+            }
+        }
+        if (known != MT_OPT_NONE && mt_options[known].value != NULL && name[length] == '\0' &&
+            i + 1 < argc) {
+            mt_text_add(out, " ");
+            i++;
+            add_shell_word(argv[i], strlen(argv[i]), out);
+        }
+    }
+}
+
 static mt_status unknown_option(const mt_args *args, const char *name, size_t length,
                                 mt_err *err)
 {
     const int command = args->command;
+    const int now = find_former(command, name, length);
     const char *names[MT_OPT_IDS];
     char given[SUGGESTION_TEXT];
     char suggestion[SUGGESTION_TEXT];
@@ -304,6 +394,10 @@ static mt_status unknown_option(const mt_args *args, const char *name, size_t le
     length = length < sizeof given ? length : sizeof given - 1;
     memcpy(given, name, length);
     given[length] = '\0';
+    if (now != MT_OPT_NONE) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\" has no option \"--%s\": it is called \"--%s\"",
+                       args->commands[command]->name, given, mt_options[now].name);
+    }
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (strcmp(given, mt_options[i].name) == 0 && command != MT_CMD_NONE) {
             return mt_fail(err, MT_E_USAGE, "\"%s\" has no option \"--%s\"",
@@ -609,14 +703,11 @@ static mt_status read_long(mt_args *args, int argc, char *const argv[], int *at,
 {
     const char *const name = argv[*at] + 2;
     const size_t length = strcspn(name, "=");
-    int option = MT_OPT_NONE;
-    for (int i = 0; i < MT_OPT_IDS; i++) {
-        if (strlen(mt_options[i].name) == length &&
-            strncmp(name, mt_options[i].name, length) == 0 && takes(args->command, i)) {
-            option = i;
-        }
-    }
+    const int option = find_option(args->command, name, length);
     if (option == MT_OPT_NONE) {
+        if (find_former(args->command, name, length) != MT_OPT_NONE) {
+            renew_line(argc, argv, args->command, &args->renewed);
+        }
         return unknown_option(args, name, length, err);
     }
     const bool attached = name[length] == '=';
@@ -751,6 +842,7 @@ void mt_args_free(mt_args *args)
     free((void *)args->pool);
     free(args->result_path);
     free(args->repeats);
+    mt_text_free(&args->renewed);
     *args = (mt_args){.command = MT_CMD_NONE};
 }
 

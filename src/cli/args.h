@@ -22,12 +22,12 @@ typedef enum mt_option_id {
     MT_OPT_DAMPED,
     MT_OPT_DRIVE,
     MT_OPT_HOLD,
-    MT_OPT_MODES,
+    MT_OPT_FREQUENCIES,
     MT_OPT_SVG,
     MT_OPT_MODE,
     MT_OPT_PARAMETERS,
     MT_OPT_INPUT,
-    MT_OPT_SEEN,
+    MT_OPT_MEASURE,
     MT_OPT_FROM,
     MT_OPT_TO,
     MT_OPT_POINTS,
@@ -41,14 +41,15 @@ typedef enum mt_option_id {
     MT_OPT_DT_OUT,
     MT_OPT_START,
     MT_OPT_RATE,
-    MT_OPT_ALONG,
+    MT_OPT_START_MODE,
     MT_OPT_PUSH,
     MT_OPT_SINE,
-    MT_OPT_CHIRP,
+    MT_OPT_SINE_SWEEP,
     MT_OPT_RANDOM,
     MT_OPT_TOLERANCE,
     MT_OPT_INTEGRATE,
     MT_OPT_OUTPUT,
+    MT_OPT_FILE,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,
     MT_OPT_TIME,
@@ -60,7 +61,7 @@ typedef enum mt_option_id {
     MT_OPT_REPORT,
     MT_OPT_RESUME,
     MT_OPT_SHARD,
-    MT_OPT_PROFILE,
+    MT_OPT_TIMING,
     MT_OPT_PROGRESS,
     MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
@@ -225,6 +226,9 @@ struct mt_args {
     const char **operands; /* [argc] */
     /* heap: file of the first operand, where that is the folder of a result */
     char *result_path;
+    /* the command line with the present names of options that had others before; s NULL: there
+     * are none */
+    mt_text renewed;
 };
 
 /**

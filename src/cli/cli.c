@@ -18,6 +18,7 @@
 #include "base/workers.h"
 #include "cli/args.h"
 #include "io/file.h"
+#include "io/folder.h"
 #include "linalg/dense.h"
 #include "result/folder.h"
 
@@ -169,7 +170,9 @@ const mt_command *const mt_commands[MT_CMD_IDS] = {MT_COMMAND_LIST(ENTRY)};
 static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)
 {
     mt_terminal_error("%s", err->text);
-    if (rc == MT_E_USAGE) {
+    if (args->renewed.s != NULL && !args->renewed.failed) {
+        mt_terminal_talk(false, "Type: %s", args->renewed.s);
+    } else if (rc == MT_E_USAGE) {
         mt_terminal_talk(false, "Try \"modetune%s%s --help\".",
                          args->command == MT_CMD_NONE ? "" : " ",
                          args->command == MT_CMD_NONE ? "" : mt_commands[args->command]->name);
@@ -190,6 +193,48 @@ static mt_status find_result(mt_args *args, mt_err *err)
     return MT_OK;
 }
 
+/* Write the file of --output, completely or not at all. */
+static mt_status save_output_file(const mt_args *args, const mt_text *text, mt_err *err)
+{
+    const char *const path = args->value[MT_OPT_FILE];
+    const char *const name = mt_text_base_name(path);
+    if (name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        return mt_fail(err, MT_E_USAGE, "--output: \"%s\" is not the name of a file", path);
+    }
+    if (strlen(name) >= MT_FOLDER_NAME) {
+        return mt_fail(err, MT_E_USAGE, "--output: the name \"%s\" is too long", name);
+    }
+    char *const folder = mt_file_folder(path);
+    if (folder == NULL || text->failed) {
+        free(folder);
+        return mt_fail_memory(err);
+    }
+    const mt_folder_file file = {name, text->s, text->length};
+    const mt_status rc = mt_folder_replace(folder, &file, 1, err);
+    free(folder);
+    MT_TRY(rc);
+    mt_terminal_talk(
+        args->given[MT_OPT_QUIET], "%s: written to %s",
+        args->n_operands > 0 ? args->operands[0] : mt_commands[args->command]->name, path);
+    return MT_OK;
+}
+
+/* Call the command; where --output names one file, that takes the place of standard output. */
+static int run_command(const mt_args *args, mt_text *out)
+{
+    mt_err err = {.code = MT_OK};
+    int code = mt_commands[args->command]->run(args, out);
+    if (!args->given[MT_OPT_FILE]) {
+        return code;
+    }
+    if (code == MT_EXIT_DONE) {
+        const mt_status rc = save_output_file(args, out, &err);
+        code = rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+    }
+    mt_text_free(out);
+    return code;
+}
+
 int mt_cli_main(int argc, char *const argv[])
 {
     mt_args args;
@@ -205,8 +250,7 @@ int mt_cli_main(int argc, char *const argv[])
     } else {
         mt_status ready = limits_set(&args, &err);
         ready = ready == MT_OK ? find_result(&args, &err) : ready;
-        code = ready == MT_OK ? mt_commands[args.command]->run(&args, &out)
-                              : mt_cli_failed(ready, &err);
+        code = ready == MT_OK ? run_command(&args, &out) : mt_cli_failed(ready, &err);
     }
     code = mt_exit_worse(code, mt_terminal_put(&out));
     if (mt_exit_without_memory()) {

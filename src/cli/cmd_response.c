@@ -753,8 +753,8 @@ static mt_response_request request_of(const mt_args *args)
 {
     return (mt_response_request){.n_in = args->all[MT_OPT_INPUT].n,
                                  .inputs = args->all[MT_OPT_INPUT].value,
-                                 .n_out = args->all[MT_OPT_SEEN].n,
-                                 .outputs = args->all[MT_OPT_SEEN].value,
+                                 .n_out = args->all[MT_OPT_MEASURE].n,
+                                 .outputs = args->all[MT_OPT_MEASURE].value,
                                  .direct = args->given[MT_OPT_DIRECT],
                                  .modes = args->keep};
 }

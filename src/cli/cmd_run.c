@@ -799,7 +799,7 @@ typedef struct job {
     mt_result *result;
     double start;
     double seconds;
-    mt_profile counts; /* --profile */
+    mt_profile counts; /* --timing */
     mt_profile *profile;
     bool stops;                  /* a signal ends the search, not the program */
     char sha256[MT_SHA256_TEXT]; /* of result.json, "" as long as it is not written */

@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "io/file.h"
-#include "io/folder.h"
 #include "library/scene_designs.h"
 #include "report/page.h"
 #include "report/table.h"
@@ -627,26 +626,6 @@ static mt_status still(const mt_args *args, const mt_scene *scene, mt_text *out,
     return MT_OK;
 }
 
-/* Write the file of --output, completely or not at all. */
-static mt_status save_output_file(const char *path, const mt_text *text, mt_err *err)
-{
-    const char *const name = mt_text_base_name(path);
-    if (name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
-        return mt_fail(err, MT_E_USAGE, "--output: \"%s\" is not the name of a file", path);
-    }
-    if (strlen(name) >= MT_FOLDER_NAME) {
-        return mt_fail(err, MT_E_USAGE, "--output: the name \"%s\" is too long", name);
-    }
-    char *const folder = mt_file_folder(path);
-    if (folder == NULL) {
-        return mt_fail_memory(err);
-    }
-    const mt_folder_file file = {name, text->s, text->length};
-    const mt_status rc = mt_folder_replace(folder, &file, 1, err);
-    free(folder);
-    return rc;
-}
-
 static mt_status check_use(const mt_args *args, mt_err *err)
 {
     if (args->given[MT_OPT_MODE] && !args->given[MT_OPT_SVG]) {
@@ -663,21 +642,10 @@ static mt_status write(const mt_args *args, const subject *o, const mt_scene *sc
 {
     const char *const title =
         scene->name[0] != '\0' ? scene->name : mt_text_base_name(o->s.path);
-    mt_text own = {.s = NULL};
-    mt_text *const to = args->given[MT_OPT_OUTPUT] ? &own : out;
-    mt_status rc = args->given[MT_OPT_SVG]          ? still(args, scene, to, err)
-                   : args->format == MT_FORMAT_JSON ? mt_scene_write(scene, to, err)
-                                                    : page(scene, title, to, err);
-    rc = rc == MT_OK && to->failed ? mt_fail_memory(err) : rc;
-    if (rc == MT_OK && to == &own) {
-        rc = save_output_file(args->value[MT_OPT_OUTPUT], &own, err);
-    }
-    if (rc == MT_OK && to == &own) {
-        mt_terminal_talk(args->given[MT_OPT_QUIET], "%s: written to %s", args->operands[0],
-                         args->value[MT_OPT_OUTPUT]);
-    }
-    mt_text_free(&own);
-    return rc;
+    const mt_status rc = args->given[MT_OPT_SVG]          ? still(args, scene, out, err)
+                         : args->format == MT_FORMAT_JSON ? mt_scene_write(scene, out, err)
+                                                          : page(scene, title, out, err);
+    return rc == MT_OK && out->failed ? mt_fail_memory(err) : rc;
 }
 
 static int run_show(const mt_args *args, mt_text *out)

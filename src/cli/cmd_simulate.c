@@ -22,7 +22,7 @@
 /* The quantity of a gauge in an output. */
 typedef enum seen_quantity { SEEN_VALUE, SEEN_SPEED, SEEN_ACCELERATION } seen_quantity;
 
-/* One --output. */
+/* One --measure. */
 typedef struct sim_output {
     const char *port; /* "grip.x:velocity" */
     int gauge;        /* index among the options' gauges */
@@ -199,7 +199,7 @@ static mt_status split_name_and_rest(const mt_repeat *r, mt_arena *mem, const ch
 
 static bool is_input(mt_option_id option)
 {
-    return option == MT_OPT_PUSH || option == MT_OPT_SINE || option == MT_OPT_CHIRP ||
+    return option == MT_OPT_PUSH || option == MT_OPT_SINE || option == MT_OPT_SINE_SWEEP ||
            option == MT_OPT_RANDOM;
 }
 
@@ -215,8 +215,8 @@ static bool is_joint(const mt_model *model, const char *name)
     return dot != NULL && dot[1] == 'h' && dot[2] >= '0' && dot[2] <= '9';
 }
 
-/* The name of the joint that --input, --sine or --sweep moves; NULL: none. Fails: MT_E_USAGE
- * (two), MT_E_MEMORY. */
+/* The name of the joint that --input, --sine or --sine-sweep moves; NULL: none. Fails:
+ * MT_E_USAGE (two), MT_E_MEMORY. */
 static mt_status sim_moved_joint(const mt_args *args, const mt_model *model, mt_arena *mem,
                                  const char **name, mt_err *err)
 {
@@ -422,7 +422,8 @@ static mt_status read_sweep(mt_loaded_model *s, const mt_repeat *r, const mt_uni
     MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(read_numbers(s, r, unit, numbers, "@:", number, err));
     if (!(number[1] > 0.0) || !(number[2] > 0.0)) {
-        return mt_fail(err, MT_E_USAGE, "--sweep: %s: a frequency is not above 0", r->value);
+        return mt_fail(err, MT_E_USAGE, "--sine-sweep: %s: a frequency is not above 0",
+                       r->value);
     }
     *out = (mt_signal){.kind = MT_SIGNAL_SWEEP,
                        .level = number[0],
@@ -476,7 +477,7 @@ static mt_status read_input(mt_loaded_model *s, const mt_args *args, const mt_sy
         const double hz = signal->sines[0].hz;
         const bool first = out->opt.n_inputs == 0;
         out->steady_hz = first || out->steady_hz == hz ? hz : 0.0;
-    } else if (r->option == MT_OPT_CHIRP) {
+    } else if (r->option == MT_OPT_SINE_SWEEP) {
         MT_TRY(read_sweep(s, r, shown_amplitude_unit(s, sys, &p), rest, out->opt.duration_s,
                           signal, err));
     } else if (r->option == MT_OPT_RANDOM) {
@@ -499,9 +500,9 @@ static mt_status find_gauge(const mt_system *sys, const char *name, sim_request 
     if (g.channel < 0) {
         g.joint = mt_system_find_joint(sys, name);
         if (g.joint < 0) {
-            return no_such_port(sys, MT_OPT_SEEN, name, false, true, mem, err);
+            return no_such_port(sys, MT_OPT_MEASURE, name, false, true, mem, err);
         }
-        MT_TRY(find_coordinate_joint(sys, MT_OPT_SEEN, name, mem, &g.joint, err));
+        MT_TRY(find_coordinate_joint(sys, MT_OPT_MEASURE, name, mem, &g.joint, err));
     }
     for (*at = 0; *at < out->opt.n_gauges; ++*at) {
         if (gauges[*at].channel == g.channel && gauges[*at].joint == g.joint) {
@@ -527,7 +528,7 @@ static mt_status read_output(const mt_system *sys, const char *text, sim_request
     const char *name = "";
     mt_port seen = {.motion = 0};
     *o = (sim_output){.port = text};
-    MT_TRY(mt_err_in(err, mt_port_split(text, false, mem, &name, &seen, err), "--output"));
+    MT_TRY(mt_err_in(err, mt_port_split(text, false, mem, &name, &seen, err), "--measure"));
     o->what = (seen_quantity)seen.motion;
     MT_TRY(find_gauge(sys, name, out, gauges, mem, &o->gauge, err));
     o->angle = is_angle(sys, gauges[o->gauge]);
@@ -544,10 +545,10 @@ static mt_status read_outputs(const mt_args *args, const mt_system *sys, mt_aren
     out->outputs = mt_arena_alloc(mem, room, sizeof *out->outputs);
     MT_TRY(mt_arena_check(mem, err));
     out->opt.gauges = gauges;
-    for (int i = 0; i < args->all[MT_OPT_SEEN].n; i++) {
-        MT_TRY(read_output(sys, args->all[MT_OPT_SEEN].value[i], out, gauges, mem, err));
+    for (int i = 0; i < args->all[MT_OPT_MEASURE].n; i++) {
+        MT_TRY(read_output(sys, args->all[MT_OPT_MEASURE].value[i], out, gauges, mem, err));
     }
-    for (int i = 0; !args->given[MT_OPT_SEEN] && i < sys->n_channels; i++) {
+    for (int i = 0; !args->given[MT_OPT_MEASURE] && i < sys->n_channels; i++) {
         MT_TRY(read_output(sys, sys->channels[i].name, out, gauges, mem, err));
     }
     const bool joints = out->n_outputs == 0;
@@ -587,7 +588,7 @@ static mt_status read_mode(mt_loaded_model *s, const mt_system *sys, const char 
     char *end = NULL;
     const long n = strtol(text, &end, 10);
     if (text[0] < '1' || text[0] > '9' || *end != ':' || n > 1000000) {
-        return mt_fail(err, MT_E_USAGE, "--mode: \"%s\" is not N:AMPLITUDE", text);
+        return mt_fail(err, MT_E_USAGE, "--start-mode: \"%s\" is not N:AMPLITUDE", text);
     }
     out->mode = (int)n;
     return mt_loaded_model_number(s, "mode", shape_unit(s, sys), end + 1, strlen(end + 1),
@@ -627,8 +628,8 @@ static mt_status sim_read(const mt_args *args, mt_loaded_model *s, const mt_syst
     if (profile != NULL) {
         MT_TRY(sim_vibrate(args, s, sys, profile, out, inputs, err));
     }
-    if (args->value[MT_OPT_ALONG] != NULL) {
-        MT_TRY(read_mode(s, sys, args->value[MT_OPT_ALONG], out, err));
+    if (args->value[MT_OPT_START_MODE] != NULL) {
+        MT_TRY(read_mode(s, sys, args->value[MT_OPT_START_MODE], out, err));
     }
     if (args->dt_out_s == 0.0 && out->steady_hz > 0.0) {
         out->opt.sample_s = fmin(out->opt.sample_s, 1.0 / (STEADY_SAMPLES * out->steady_hz));
@@ -951,7 +952,7 @@ typedef struct job {
     mt_run run; /* stopped by the terminal while the motion is computed */
     int c;
     mt_arena mem;
-    mt_analysis *a; /* with --mode */
+    mt_analysis *a; /* with --start-mode */
     mt_system *sys; /* without */
     mt_linear *lin;
     sim_request request;
@@ -982,12 +983,13 @@ static mt_status make_driven_system(job *j, mt_err *err)
     if (drive.joint != NULL) {
         MT_TRY(sim_start_of(j->args, s, drive.joint, &given, &drive.position, err));
     }
-    if (j->args->given[MT_OPT_ALONG] && drive.joint != NULL) {
-        return mt_fail(err, MT_E_USAGE,
-                       "--mode excludes --start and --rate: it starts a motion in which no "
-                       "joint is moved");
+    if (j->args->given[MT_OPT_START_MODE] && drive.joint != NULL) {
+        return mt_fail(
+            err, MT_E_USAGE,
+            "--start-mode excludes --start and --rate: it starts a motion in which no "
+            "joint is moved");
     }
-    if (j->args->given[MT_OPT_ALONG]) {
+    if (j->args->given[MT_OPT_START_MODE]) {
         MT_TRY(mt_loaded_model_analyse(s, j->c, 0, &j->a, err));
         j->sys = j->a->own_sys;
         j->lin = j->a->lin;
@@ -1040,8 +1042,9 @@ static mt_status shape_size(job *j, const double *dq, double *size, mt_err *err)
         most[turns ? 1 : 0] = fabs(way) > fabs(most[turns ? 1 : 0]) ? way : most[turns ? 1 : 0];
     }
     *size = most[0] != 0.0 ? most[0] : most[1];
-    return *size != 0.0 ? MT_OK
-                        : mt_fail(err, MT_E_USAGE, "--mode: no sensor moves in this mode");
+    return *size != 0.0
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE, "--start-mode: no sensor moves in this mode");
 }
 
 static mt_status start_along(job *j, mt_err *err)
@@ -1050,7 +1053,7 @@ static mt_status start_along(job *j, mt_err *err)
     const int at = mt_modal_flexible(modes, j->request.mode);
     double size = 0.0;
     if (at < 0) {
-        return mt_fail(err, MT_E_USAGE, "--mode: there are %d vibration modes",
+        return mt_fail(err, MT_E_USAGE, "--start-mode: there are %d vibration modes",
                        mt_modal_vibrations(modes));
     }
     double *const dq = mt_arena_f64(&j->mem, (size_t)j->sys->nq, 1);
@@ -1060,7 +1063,7 @@ static mt_status start_along(job *j, mt_err *err)
     for (int i = 0; i < j->sys->nq; i++) {
         dq[i] *= j->request.amplitude / size;
     }
-    return mt_err_in(err, mt_start_along(j->lin, dq, &j->mem, &j->start, err), "--mode");
+    return mt_err_in(err, mt_start_along(j->lin, dq, &j->mem, &j->start, err), "--start-mode");
 }
 
 /* Position and velocities to begin with. */
@@ -1256,8 +1259,8 @@ const mt_command mt_command_simulate = {
         "fixed lines and turn about fixed axes, and all forces grow in proportion, the "
         "equations are linear: then the motion is exact, by the matrix exponential, and the "
         "last lines say so. The motion begins at rest in "
-        "equilibrium unless --start, --rate or --mode say otherwise; --input, --sine, "
-        "--sweep, --random and --vibration excite it. Prints the outputs over time and "
+        "equilibrium unless --start, --rate or --start-mode say otherwise; --input, --sine, "
+        "--sine-sweep, --random and --vibration excite it. Prints the outputs over time and "
         "what they show: for a free motion its turns and its tones (frequency, damping, "
         "amplitude), under a sine the steady amplitudes and phases, the balance of energy, "
         "and the largest drift of a joint in a step before it was corrected.\n"

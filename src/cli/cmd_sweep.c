@@ -391,7 +391,7 @@ static mt_status read_request(const mt_args *args, mt_loaded_model *s, sweep_req
 typedef struct job {
     sweep_view v;
     mt_arena mem;
-    mt_analysis *a; /* with --modes */
+    mt_analysis *a; /* with --frequencies */
     mt_system *sys; /* without */
     mt_linear *lin;
 } job;
@@ -472,7 +472,7 @@ static mt_status sweep_configuration(const mt_args *args, const mt_loaded_model 
     def.drive = &r->drive;
     MT_TRY(mt_system_new_of(&def, &j->sys, err));
     MT_TRY(check_reach(j->sys, r, err));
-    if (args->given[MT_OPT_MODES]) {
+    if (args->given[MT_OPT_FREQUENCIES]) {
         mt_system_delete(j->sys);
         j->sys = NULL;
         MT_TRY(mt_analysis_new_of(&def, 0, &j->a, err));
@@ -484,9 +484,9 @@ static mt_status sweep_configuration(const mt_args *args, const mt_loaded_model 
         MT_TRY(mt_linear_new(j->sys, &j->lin, err));
     }
     j->v.sys = j->sys;
-    const mt_status rc =
-        mt_sweep_run(j->lin, at, r->n, r->positions,
-                     args->given[MT_OPT_MODES] ? &visitor : NULL, &j->mem, &j->v.sweep, err);
+    const mt_status rc = mt_sweep_run(j->lin, at, r->n, r->positions,
+                                      args->given[MT_OPT_FREQUENCIES] ? &visitor : NULL,
+                                      &j->mem, &j->v.sweep, err);
     return mt_err_in(err, rc, "configuration \"%s\"", j->v.configuration);
 }
 
@@ -658,11 +658,11 @@ const mt_command mt_command_sweep = {
     .least = 1,
     .most = 1,
     .summary = "positions and frequencies over a range of motion",
-    .details =
-        "Drives a joint through a range (--drive) and prints at each position the "
-        "coordinate of every joint, its ratio to the driven one (an exact derivative), "
-        "what holds the joint, and with --modes the natural frequencies by index (default: "
-        "6). If a limit position ends the range, the positions before it are printed, a "
-        "message names the limit, and the exit status is 3.",
+    .details = "Drives a joint through a range (--drive) and prints at each position the "
+               "coordinate of every joint, its ratio to the driven one (an exact derivative), "
+               "what holds the joint, and with --frequencies the natural frequencies by index "
+               "(default: "
+               "6). If a limit position ends the range, the positions before it are printed, a "
+               "message names the limit, and the exit status is 3.",
     .run = run_sweep,
 };

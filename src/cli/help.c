@@ -61,13 +61,47 @@ static void fill_lines(const char *s, int column, mt_text *out)
     mt_text_add(out, "\n");
 }
 
-static void help_option(const mt_option *o, mt_text *out)
+/* An option as it is of one command, whose own formats --format has; MT_CMD_NONE: as of all. */
+typedef struct shown_option {
+    const char *value; /* NULL: a switch */
+    const char *help;
+    char values[FORM_TEXT];
+} shown_option;
+
+/* The words of --format of a command. */
+static void join_formats(int command, char *text, size_t size)
 {
+    int n = 0;
+    for (int i = 0; i < MT_FORMATS; i++) {
+        const char *const name = mt_format_of(i, command);
+        if (name != NULL) {
+            n += mt_snprintf(text + n, size - (size_t)n, "%s%s", n == 0 ? "" : "|", name);
+        }
+    }
+}
+
+static void show_option(int option, int command, shown_option *out)
+{
+    const mt_option *const o = &mt_options[option];
+    *out = (shown_option){.value = o->value, .help = o->help};
+    if (option == MT_OPT_FORMAT && command != MT_CMD_NONE) {
+        join_formats(command, out->values, sizeof out->values);
+        out->value = out->values;
+        out->help = command == MT_CMD_SHOW ? "form of standard output (default: html)"
+                                           : "form of standard output (default: text)";
+    }
+}
+
+static void help_option(int option, int command, mt_text *out)
+{
+    const mt_option *const o = &mt_options[option];
     char form[FORM_TEXT];
-    const int n =
-        mt_snprintf(form, sizeof form, "  %c%c%s--%s%s%s", o->letter == '\0' ? ' ' : '-',
-                    o->letter == '\0' ? ' ' : o->letter, o->letter == '\0' ? "  " : ", ",
-                    o->name, o->value == NULL ? "" : " ", o->value == NULL ? "" : o->value);
+    shown_option shown;
+    show_option(option, command, &shown);
+    const int n = mt_snprintf(
+        form, sizeof form, "  %c%c%s--%s%s%s", o->letter == '\0' ? ' ' : '-',
+        o->letter == '\0' ? ' ' : o->letter, o->letter == '\0' ? "  " : ", ", o->name,
+        shown.value == NULL ? "" : " ", shown.value == NULL ? "" : shown.value);
     mt_text_add(out, form);
     if (n + 2 > OPTION_COLUMN) {
         mt_text_add(out, "\n");
@@ -75,7 +109,7 @@ static void help_option(const mt_option *o, mt_text *out)
     } else {
         spaces(OPTION_COLUMN - n, out);
     }
-    fill_lines(o->help, OPTION_COLUMN, out);
+    fill_lines(shown.help, OPTION_COLUMN, out);
 }
 
 static void help_command(const mt_command *const *commands, int command, mt_text *out)
@@ -86,7 +120,7 @@ static void help_command(const mt_command *const *commands, int command, mt_text
     mt_text_add(out, "\nOptions:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_option_is_of(i, command)) {
-            help_option(&mt_options[i], out);
+            help_option(i, command, out);
         }
     }
 }
@@ -108,7 +142,7 @@ static void print_help(const mt_command *const *commands, int command, mt_text *
     mt_text_add(out, "\nOptions of every command:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_options[i].commands == MT_ALL_COMMANDS || mt_options[i].commands == 0U) {
-            help_option(&mt_options[i], out);
+            help_option(i, MT_CMD_NONE, out);
         }
     }
     mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command, \"modetune help "
@@ -882,17 +916,20 @@ static void head(const char *command, const char *summary, mt_text *out)
     section("SYNOPSIS", out);
 }
 
-static void add_option(const mt_option *o, mt_text *out)
+static void add_option(int option, int command, mt_text *out)
 {
+    const mt_option *const o = &mt_options[option];
     mt_text form = {.s = NULL};
+    shown_option shown;
+    show_option(option, command, &shown);
     if (o->letter != '\0') {
         mt_text_addf(&form, "-%c, ", o->letter);
     }
     mt_text_addf(&form, "--%s", o->name);
     out->failed = out->failed || form.failed;
-    man_tag(form.failed ? "" : form.s, o->value, out);
+    man_tag(form.failed ? "" : form.s, shown.value, out);
     mt_text_free(&form);
-    man_help(o->help, true, out);
+    man_help(shown.help, true, out);
 }
 
 static void add_exits(mt_text *out)
@@ -954,7 +991,7 @@ static void manual_of(const mt_command *const *commands, int command, mt_text *o
     section("OPTIONS", out);
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_option_is_of(i, command)) {
-            add_option(&mt_options[i], out);
+            add_option(i, command, out);
         }
     }
     man_markdown(rest, last, false, out);
@@ -1007,7 +1044,7 @@ static void print_manual(const mt_command *const *commands, int command, mt_text
     section("OPTIONS", out);
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_options[i].commands == MT_ALL_COMMANDS || mt_options[i].commands == 0U) {
-            add_option(&mt_options[i], out);
+            add_option(i, MT_CMD_NONE, out);
         }
     }
     add_common(out);
@@ -1024,7 +1061,7 @@ static void print_manual(const mt_command *const *commands, int command, mt_text
 /*
  * Scripts for the shells, from the tables behind --help. What the value of an option may be is
  * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL and PROFILE a
- * file; of another value nothing is known.
+ * JSON file, FILE any; of another value nothing is known.
  */
 
 static const char separators[] = "|";
@@ -1052,13 +1089,34 @@ static void add_choice(const char *value, mt_text *out)
     }
 }
 
-/* -o --output, for a pattern of `case`. */
-static void add_pattern(const mt_option *o, mt_text *out)
+static bool is_shared(const mt_option *o)
 {
-    if (o->letter != '\0') {
-        mt_text_addf(out, "-%c|", o->letter);
+    int n = 0;
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        n += strcmp(mt_options[i].name, o->name) == 0 ? 1 : 0;
     }
-    mt_text_addf(out, "--%s", o->name);
+    return n > 1;
+}
+
+/* "-o"|"--output" behind a command, for a pattern of `case`: behind any, or, where another
+ * option is called so, behind each of its own. */
+static void add_pattern(const mt_command *const *commands, const mt_option *o, mt_text *out)
+{
+    const bool shared = is_shared(o);
+    const char *between = "";
+    for (int i = 0; i < (shared ? (int)MT_CMD_IDS : 1); i++) {
+        const char *const before = shared ? commands[i]->name : "";
+        const char *const star = shared ? "" : "*";
+        if (shared && !mt_option_is_of((int)(o - mt_options), i)) {
+            continue;
+        }
+        if (o->letter != '\0') {
+            mt_text_addf(out, "%s%s\"%s -%c\"", between, star, before, o->letter);
+            between = "|";
+        }
+        mt_text_addf(out, "%s%s\"%s --%s\"", between, star, before, o->name);
+        between = "|";
+    }
 }
 
 static void bash_options(int command, mt_text *out)
@@ -1092,16 +1150,16 @@ static void add_formats(int command, mt_text *out)
 }
 
 /* What stands behind an option that takes a value. */
-static void bash_values(mt_text *out)
+static void bash_values(const mt_command *const *commands, mt_text *out)
 {
-    mt_text_add(out, "    case $previous in\n");
+    mt_text_add(out, "    case \"$command $previous\" in\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
         const mt_option *const o = &mt_options[i];
         if (o->value == NULL) {
             continue;
         }
         mt_text_add(out, "    ");
-        add_pattern(o, out);
+        add_pattern(commands, o, out);
         if (i == MT_OPT_FORMAT) {
             mt_text_add(out, ") COMPREPLY=($(compgen -W \"$formats\" -- \"$current\")); "
                              "return ;;\n");
@@ -1111,6 +1169,8 @@ static void bash_values(mt_text *out)
             mt_text_add(out, "' -- \"$current\")); return ;;\n");
         } else if (is_called(o, "DIR")) {
             mt_text_add(out, ") COMPREPLY=($(compgen -d -- \"$current\")); return ;;\n");
+        } else if (is_called(o, "FILE")) {
+            mt_text_add(out, ") COMPREPLY=($(compgen -f -- \"$current\")); return ;;\n");
         } else if (is_file(o)) {
             mt_text_add(out, ") ;;\n");
         } else {
@@ -1151,7 +1211,7 @@ static void bash(const mt_command *const *commands, mt_text *out)
         mt_text_add(out, "' ;;\n");
     }
     mt_text_add(out, "    esac\n");
-    bash_values(out);
+    bash_values(commands, out);
     mt_text_add(out, "    if [[ -z $command || $current == -* ]]; then\n"
                      "        COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
                      "    elif [[ -n $names ]]; then\n"
@@ -1194,9 +1254,10 @@ static void zsh_option(const mt_option *o, int command, mt_text *out)
         }
         mt_text_add(out, ")");
     } else if (o->value != NULL) {
-        const char *const how = is_called(o, "DIR") ? "_files -/"
-                                : is_file(o)        ? "_files -g \"*.json\""
-                                                    : "";
+        const char *const how = is_called(o, "DIR")    ? "_files -/"
+                                : is_called(o, "FILE") ? "_files"
+                                : is_file(o)           ? "_files -g \"*.json\""
+                                                       : "";
         mt_text_addf(out, ":%s:%s", o->name, how);
     }
     mt_text_add(out, "'");

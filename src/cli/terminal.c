@@ -943,7 +943,7 @@ void mt_watch_end(bool complete)
     it.has_progress = false;
 }
 
-/* --profile: how often each stage of the evaluations was done. */
+/* --timing: how often each stage of the evaluations was done. */
 
 static const double NANOSECOND = 1e-9;
 
@@ -952,7 +952,7 @@ enum { SECONDS_DIGITS = 3 };
 
 mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own)
 {
-    if (!args->given[MT_OPT_PROFILE]) {
+    if (!args->given[MT_OPT_TIMING]) {
         return NULL;
     }
     mt_profile_init(own, mt_terminal_seconds);

@@ -116,7 +116,7 @@ void mt_watch_go_on(void);
 /* Erase the line and write the last message. complete: nothing was cut. */
 void mt_watch_end(bool complete);
 
-/* Counters of the evaluations of a model from here on, with --profile; else NULL. */
+/* Counters of the evaluations of a model from here on, with --timing; else NULL. */
 mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own);
 
 /* Print the stages as a table on standard error; NULL: nothing. Returns the exit status. */

@@ -342,7 +342,7 @@ static const mt_key FREQUENCY_RESPONSE[] = {
     MT_GOAL_CONFIGURATION_ROWS,
     MT_M_REF("input", true, response_limit.input, "The input, as for response --input.",
              .examples = "[\"grip.x\"]"),
-    MT_M_REF("output", true, response_limit.output, "The output, as for response --output.",
+    MT_M_REF("output", true, response_limit.output, "The output, as for response --measure.",
              .examples = "[\"grip.x:acceleration\"]"),
     MT_M_REF("measurement", true, response_limit.measurement_name,
              "Name of one of the study's measurements."),

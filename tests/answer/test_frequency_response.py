@@ -195,7 +195,7 @@ def round_trip(folder):
     """What `response` writes is a measurement: at its own parameters the misfit is rounding, and from others it comes back."""
     bench = chain_study(folder, {"hammer": {"file": "own.csv"}}, [goal(2, 1, "hammer")], start=TRUE)
     (folder / "model.json").write_text(json.dumps(model(STATIONS, TRUE)))
-    command = [PROGRAM, "response", "model.json", "--input", "x1.x", "--output", "x1.x:acceleration", "--output", "x2.x:acceleration", "--points", "40", "--format", "csv"]
+    command = [PROGRAM, "response", "model.json", "--input", "x1.x", "--measure", "x1.x:acceleration", "--measure", "x2.x:acceleration", "--points", "40", "--format", "csv"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
     check(done.returncode == 0, f"round trip: {done.stderr}")
     (folder / "own.csv").write_text(done.stdout)

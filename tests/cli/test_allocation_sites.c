@@ -84,7 +84,8 @@ static struct {
     {"info " MODELS "space_stick.json", MT_EXIT_DONE, FULL},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE, FULL},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE, FULL},
-    {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE, FULL},
+    {"sweep --drive pivot=-0.1:0.1:3 --frequencies " MODELS "driven_rod.json", MT_EXIT_DONE,
+     FULL},
     {"sweep --drive pivot=-0.1:0.1:3 --format json " MODELS "driven_rod.json", MT_EXIT_DONE,
      FULL},
     {"sweep --drive pivo=-0.1:0.1:3 --format csv " MODELS "driven_rod.json", MT_EXIT_INPUT,
@@ -95,7 +96,7 @@ static struct {
     {"simulate -c loaded --duration 0.02 --start jA=0.1 --rate jA=1 " MODELS
      "space_four_bar.json",
      MT_EXIT_DONE, FULL},
-    {"simulate -c still --mode 1:1e-3 --duration 0.9 --dt-out 0.1 --format json " MODELS
+    {"simulate -c still --start-mode 1:1e-3 --duration 0.9 --dt-out 0.1 --format json " MODELS
      "four_bar.json",
      MT_EXIT_DONE, FULL},
     {"simulate -c still --input jA=0.1*t --input base.x=sin(9*t) --input tip.x=t --duration "
@@ -161,7 +162,7 @@ static struct {
     {"run --threads 1 -o @ studies/inceptor_trade.json", MT_EXIT_DONE, FEW},
     {"run --threads 1 -o @ studies/six_masses_bands.json", MT_EXIT_DONE, FEW},
     {"run --threads 1 -o @ " WRONG "study_bounds.json", MT_EXIT_INPUT, FULL},
-    {"response --input base.x --output tip.x:velocity --output joint.pivot.x "
+    {"response --input base.x --measure tip.x:velocity --measure joint.pivot.x "
      "--sensitivity m,L -c hanging " MODELS "pendulum.json",
      MT_EXIT_DONE, FULL},
     {"response --vibration helicopter_uh60_panel --input base.x -c still --points 3 " MODELS

@@ -45,7 +45,7 @@ static const struct {
     {"sensitivity " MODELS "space_frame.json", MT_EXIT_DONE},
     {"sensitivity --format json " MODELS "ring.json", MT_EXIT_DONE},
     {"sensitivity --format csv " MODELS "driven_rod.json", MT_EXIT_DONE},
-    {"response --input tip.x --output tip.y:velocity --sensitivity k -c still --points 3 "
+    {"response --input tip.x --measure tip.y:velocity --sensitivity k -c still --points 3 "
      "--from 1 --to 2 " MODELS "four_bar.json",
      MT_EXIT_DONE},
     {"response --vibration tests/documents/good/profile.json --input base.y -c still --points "
@@ -55,7 +55,7 @@ static const struct {
     {"info " MODELS "space_stick.json", MT_EXIT_DONE},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},
-    {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"sweep --drive pivot=-0.1:0.1:3 --frequencies " MODELS "driven_rod.json", MT_EXIT_DONE},
     {"simulate --vibration base.y=tests/documents/good/profile.json -c still --duration 0.01 "
      "--format "
      "json " MODELS "four_bar.json",
@@ -66,7 +66,7 @@ static const struct {
     {"simulate -c still --input jA=0.1*t --input base.x=sin(9*t) --duration 0.01 " MODELS
      "four_bar.json",
      MT_EXIT_DONE},
-    {"simulate -c still --mode 1:1e-3 --duration 0.9 --dt-out 0.1 --format csv " MODELS
+    {"simulate -c still --start-mode 1:1e-3 --duration 0.9 --dt-out 0.1 --format csv " MODELS
      "four_bar.json",
      MT_EXIT_DONE},
     {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE},

@@ -263,7 +263,7 @@ class Doubts(CliTest):
             doubts, facts = self.found(path)
             self.assertEqual((doubts, [f["kind"] for f in facts]), ([], want))
             for command in (["modes"], ["info"], ["sensitivity"], ["sweep", "--drive", "hinge=0:0.1:2"],
-                            ["simulate", "--start", "hinge=0.01", "--duration", "0.001"], ["response", "--output", "hand.y", "--input", "hand.y"]):
+                            ["simulate", "--start", "hinge=0.01", "--duration", "0.001"], ["response", "--measure", "hand.y", "--input", "hand.y"]):
                 done = self.expect(0, command[0], path, *command[1:])
                 for fact in facts:
                     self.assertIn(fact["text"], done.stdout)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """--help, the manual pages and the documents say the same, help finds topics; wrong use is answered helpfully."""
 import re
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -12,25 +13,25 @@ PAGES = [Path(SOURCE) / page for page in ("README.md", "problems/README.md", "st
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 ALONE = {"manual", "completion", "version"}
 OPTIONS = {
-    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "resume", "shard", "profile", "progress", "report"},
-    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "redo", "profile", "progress", "report"},
+    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "resume", "shard", "timing", "progress", "report"},
+    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "redo", "timing", "progress", "report"},
     "compare": {"threads", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "progress"},
-    "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
+    "modes": {"configuration", "set", "count", "shapes", "damped", "timing", "progress"},
     "mac": {"count"},
-    "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
-    "simulate": {"vibration", "configuration", "set", "duration", "dt-out", "start", "rate", "mode", "input", "sine", "sweep", "random", "integrate", "seed", "output", "tolerance", "time"},
+    "sweep": {"configuration", "set", "count", "drive", "hold", "frequencies"},
+    "simulate": {"vibration", "configuration", "set", "duration", "dt-out", "start", "rate", "start-mode", "input", "sine", "sine-sweep", "random", "integrate", "seed", "measure", "tolerance", "time"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
-    "response": {"configuration", "set", "input", "output", "from", "to", "points", "log", "modes", "direct", "poles", "sensitivity", "vibration"},
+    "response": {"configuration", "set", "input", "measure", "from", "to", "points", "log", "modes", "direct", "poles", "sensitivity", "vibration"},
     "info": {"configuration", "set"},
     "show": {"configuration", "set", "output", "svg", "mode", "model"},
     "report": {"output", "verify"},
     "explain": {"rank"},
-    "apply": {"rank", "model"},
+    "apply": {"rank", "model", "output"},
     "diff": {"rel-tol", "abs-tol"},
     "check": set(),
     "init": {"kind"},
     "examples": {"output"},
-    "schema": set(),
+    "schema": {"output"},
     "profile": {"spectrum", "damping-ratio"},
     "help": set(),
 }
@@ -138,6 +139,8 @@ class Help(CliTest):
         (self.folder / "models").mkdir()
         self.assertEqual(self.completed("run", "") & {"study.json", "notes.txt", "models"}, {"study.json", "models"})
         self.assertEqual(self.completed("run", "-o", "m"), {"models"})
+        self.assertEqual(self.completed("show", "-o", "n"), {"notes.txt"})
+        self.assertEqual(self.completed("apply", "--output", "n"), {"notes.txt"})
         self.assertEqual(self.completed("apply", "result.json", "--model", "study."), {"study.json"})
 
     def test_completion_of_zsh_is_well_formed_and_has_all(self):
@@ -245,6 +248,7 @@ class WrongUse(CliTest):
             done = self.expect(2, *args)
             self.assertEqual(done.stdout, "")
             self.assertEqual(done.stderr.splitlines()[0], f"modetune: error: {want}")
+        return done.stderr
 
     def test_messages(self):
         self.wrong('a command is missing')
@@ -286,6 +290,38 @@ class WrongUse(CliTest):
         self.wrong('unknown configuration "xyzzy"', "modes", self.model, "-c", "xyzzy")
         self.wrong('"problems/model.json" has 4 configurations: name one, as problems/model.json:held', "mac",
                    self.model, f"{self.model}:held")
+
+    def test_a_name_of_an_earlier_version_is_answered_by_the_line_to_type(self):
+        for old, new, *line in (
+                ("output", "measure", "response", "model.json", "--input", "e.y", "--output", "e.y:acceleration", "--output=spring.k"),
+                ("output", "measure", "simulate", "model.json", "--duration", "1", "--output", "e.y"),
+                ("modes", "frequencies", "sweep", "model.json", "--drive", "pivot=-10*deg:10*deg:3", "--modes", "--count", "2"),
+                ("mode", "start-mode", "simulate", "it's mine.json", "--duration", "1", "--mode", "1:0.01"),
+                ("sweep", "sine-sweep", "simulate", "--sweep", "base.x=1@5:9", "model.json", "--set", "--sweep", "--", "--sweep"),
+                ("profile", "timing", "run", "study.json", "-o", "out", "--profile"),
+                ("profile", "timing", "merge", "study.json", "a.journal", "--profile"),
+                ("profile", "timing", "modes", "", "--profile", "--help")):
+            with self.subTest(line):
+                told = self.wrong(f'"{line[0]}" has no option "--{old}": it is called "--{new}"', *line)
+                typed = re.search(r"^Type: (.*)$", told, re.M).group(1)
+                want = [f"--{new}{word[2 + len(old):]}" if re.fullmatch(rf"--{old}(=.*)?", word) and line[i - 1] not in ("--set", "--") else word
+                        for i, word in enumerate(line)]
+                self.assertEqual(shlex.split(typed), ["modetune", *want])
+                # no option of the line is unknown any more
+                self.assertNotIn("has no option", self.run_program(*want).stderr)
+        self.wrong('"show" has no option "--modes"', "show", self.model, "--modes")
+
+    def test_a_file_takes_the_place_of_standard_output(self):
+        self.expect(0, "schema", "study", "-o", "own.json")
+        self.assertEqual((self.folder / "own.json").read_text(encoding="utf-8"), self.expect(0, "schema", "study").stdout)
+        self.assertEqual(self.expect(2, "schema", "stdy", "--output", "own.json").stdout, "")
+        self.assertEqual((self.folder / "own.json").read_text(encoding="utf-8"), self.expect(0, "schema", "study").stdout)
+        self.assertIn("is not the name of a file", self.expect(2, "schema", "study", "-o", "./").stderr)
+
+    def test_format_lists_what_the_command_has(self):
+        for command, forms in (("run", "text|json|csv"), ("report", "text|json|csv|html"), ("check", "text|json|csv|sarif"), ("show", "json|html"),
+                               ("apply", "text|json"), ("help", "text")):
+            self.assertRegex(self.expect(0, command, "--help").stdout, rf"--format {re.escape(forms)}\s")
 
     def test_a_hint_points_to_the_help(self):
         self.assertIn('Try "modetune modes --help".\n', self.expect(2, "modes").stderr)

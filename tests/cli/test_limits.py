@@ -21,7 +21,7 @@ COMMANDS = [
     ("modes", "problems/truss_72bar.json", "--shapes"),
     ("info", "problems/stick_reference.json"),
     ("sensitivity", "problems/truss_10bar.json"),
-    ("sweep", "problems/inceptor.json", "-c", "installed", "--drive", "pivot=-0.1:0.1:3", "--modes"),
+    ("sweep", "problems/inceptor.json", "-c", "installed", "--drive", "pivot=-0.1:0.1:3", "--frequencies"),
     ("mac", "problems/beam_reference.json", "problems/beam_lumped.json"),
     ("compare", "studies/engine_orders.json", "--threads", "3"),
     ("run", "studies/engine_orders.json", "-o", "@"),

@@ -83,7 +83,7 @@ class Modes(CliTest):
         mode = got["modes"][0]
         self.assertEqual((mode["kind"], mode["index"], mode["frequency_hz"]), ("undecided", None, None))
         self.assertIn("undecided in 1 direction: springs and loads cancel", self.expect(0, "modes", path).stdout)
-        sweep = self.json_of("sweep", path, "--drive", "pin=0:0.1:2", "--hold", "k", "--modes")
+        sweep = self.json_of("sweep", path, "--drive", "pin=0:0.1:2", "--hold", "k", "--frequencies")
         points = (sweep[0] if isinstance(sweep, list) else sweep)["points"]
         self.assertEqual([p["undecided_modes"] for p in points], [1, 0])
         study = self.write("studies/standing.json", STANDING_STUDY)

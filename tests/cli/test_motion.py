@@ -293,7 +293,7 @@ class Random(unittest.TestCase):
         fresh["parameters"].update(x)
         (Path(folder) / "fresh.json").write_text(json.dumps(fresh))
         done = run("sweep", "fresh.json", "-c", next(iter(named)), "--drive",
-                   f"shoulder={min(at)!r}:{max(at)!r}:{n}", "--modes", "--format", "json", "--quiet", cwd=folder)
+                   f"shoulder={min(at)!r}:{max(at)!r}:{n}", "--frequencies", "--format", "json", "--quiet", cwd=folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         text = json.loads(done.stdout)
         text = text[0] if isinstance(text, list) else text

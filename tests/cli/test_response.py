@@ -100,7 +100,7 @@ class Response(CliTest):
         self.assertIn("Resonances that nothing damps have no magnitude: it is infinite.", text)
 
     def test_csv_has_a_row_per_value_and_the_ground_can_move(self):
-        rows = list(csv.DictReader(io.StringIO(self.expect(0, "response", self.one, "--input", "base.x", "--output", "a.x:acceleration", "--output",
+        rows = list(csv.DictReader(io.StringIO(self.expect(0, "response", self.one, "--input", "base.x", "--measure", "a.x:acceleration", "--measure",
                                                            "joint.j.x", "--from", "0.1", "--to", "pi", "--log", "--format", "csv").stdout)))
         self.assertEqual({r["output"] for r in rows}, {"a.x:acceleration", "joint.j.x"})
         first = [r for r in rows if r["output"] == "a.x:acceleration"]
@@ -115,7 +115,7 @@ class Response(CliTest):
     def test_poles_and_residues_make_the_response(self):
         model, _, _, _ = chain(7, 4)
         path = self.write("problems/chain.json", json.dumps(model))
-        got = self.json_of("response", path, "-c", "default", "--input", "base.x", "--output", "b2.x:acceleration", "--poles")
+        got = self.json_of("response", path, "-c", "default", "--input", "base.x", "--measure", "b2.x:acceleration", "--poles")
         entry, = got["responses"]
         s = 2j * math.pi * numpy.array(got["frequencies_hz"])
         value = sum(complex(d["re"], d["im"]) * s ** k for k, d in enumerate(entry["polynomial"]))
@@ -141,7 +141,7 @@ class Response(CliTest):
                            (["--input", "a.x", "--points", "1"], "--points: a grid has at least 2 points"),
                            (["--input", "a.x", "--sensitivity", "k9"], '--sensitivity: unknown parameter "k9"')):
             self.assertIn(said, self.expect(2, "response", self.model, "-c", "held", *args).stderr)
-        self.assertIn('joint "rb" is redundant', self.expect(2, "response", self.model, "-c", "twice", "--input", "a.x", "--output", "joint.rb.y").stderr)
+        self.assertIn('joint "rb" is redundant', self.expect(2, "response", self.model, "-c", "twice", "--input", "a.x", "--measure", "joint.rb.y").stderr)
 
 
 if __name__ == "__main__":

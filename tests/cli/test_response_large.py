@@ -31,7 +31,7 @@ class ResponseLarge(CliTest):
         return self.write("chain.json", json.dumps(chain))
 
     def test_a_chain(self):
-        options = ("--input", "tip.y", "--output", "tip.y", "--output", "middle.y:velocity", "--from", "0.1", "--to", "60", "--points", "100")
+        options = ("--input", "tip.y", "--measure", "tip.y", "--measure", "middle.y:velocity", "--from", "0.1", "--to", "60", "--points", "100")
         some, whole = self.both(self.chain({"mass_per_s": 2}), *options)
         for one, other in zip(some["responses"], whole["responses"]):
             self.assertEqual([e["kind"] for e in one["extremes"]], [e["kind"] for e in other["extremes"]])
@@ -42,7 +42,7 @@ class ResponseLarge(CliTest):
     def test_under_vibration(self):
         model = self.chain({"ratios": [0.02] * 8})
         profile = self.write("profile.json", json.dumps({"format": "modetune-profile/1", "axis": "y", "random": {"psd_g2_per_hz": [[0.5, 0.01], [20, 0.01]]}}))
-        some, whole = self.both(model, "--vibration", profile, "--output", "tip.y:relative_displacement", "--output", "middle.y:acceleration")
+        some, whole = self.both(model, "--vibration", profile, "--measure", "tip.y:relative_displacement", "--measure", "middle.y:acceleration")
         for one, other in zip(some["responses"], whole["responses"]):
             self.assertAlmostEqual(one["vibration"]["rms"] / other["vibration"]["rms"], 1.0, delta=1e-7)
 
@@ -51,9 +51,9 @@ class ResponseLarge(CliTest):
         link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
         link["damping"] = {"mass_per_s": 1}
         model = self.write("link.json", json.dumps(link))
-        done = self.expect(0, "response", model, "--input", "tip.y", "--output", "tip.y")
+        done = self.expect(0, "response", model, "--input", "tip.y", "--measure", "tip.y")
         self.assertRegex(done.stdout, r"By the \d+ lowest of 5000 modes and \d+ shapes of the others\. .* rounding and what is left out are below 1e-\d\d of a value")
-        whole = self.response(model, "--input", "tip.y", "--output", "tip.y")
+        whole = self.response(model, "--input", "tip.y", "--measure", "tip.y")
         # of a clamped beam of unit length, mass and stiffness: w = 1.875104^2, phi(1)^2 = 4, quality w
         peak = whole["responses"][0]["extremes"][0]
         self.assertAlmostEqual(peak["frequency_hz"], 1.8751040687 ** 2 / (2 * math.pi), delta=0.03)
@@ -65,7 +65,7 @@ class ResponseLarge(CliTest):
             frame = large.frame(4, 3, 2, 2, clamped)
             frame["sensors"] = [{"name": "top", "on": "L45", "fraction": 1, "directions": ["x", "z"]}, {"name": "low", "on": "L2", "fraction": 0.5, "directions": ["y"]}]
             model = self.write("frame.json", json.dumps(frame))
-            options = ("--input", "top.x", *(("--input", "base.y") if clamped else ()), "--output", "top.z", "--output", "low.y:acceleration", "--from", "2", "--to", "30", "--points", "40")
+            options = ("--input", "top.x", *(("--input", "base.y") if clamped else ()), "--measure", "top.z", "--measure", "low.y:acceleration", "--from", "2", "--to", "30", "--points", "40")
             some, whole = self.both(model, *options)
             for one, other in zip(some["responses"], whole["responses"]):
                 at = {f: i for i, f in enumerate(whole["frequencies_hz"])}
@@ -84,7 +84,7 @@ class ResponseLarge(CliTest):
         def bent(n):
             tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["x", "y"]}], "damping": {"mass_per_s": 2}}
             return self.write(f"bent{n}.json", json.dumps({**large.link(n), **tip, "gravity_m_per_s2": [0, -9.81]}))
-        options = ("--input", "tip.y", "--output", "tip.x", "--output", "tip.y", "--from", "0.2", "--to", "10", "--points", "30")
+        options = ("--input", "tip.y", "--measure", "tip.x", "--measure", "tip.y", "--from", "0.2", "--to", "10", "--points", "30")
         some, whole = self.both(bent(150), *options)
         fine = self.response(bent(6000), *options)
         self.assertIn("shapes_of_others", fine)
@@ -107,14 +107,14 @@ class ResponseLarge(CliTest):
         for more, why in (({"gravity_m_per_s2": [9.81, 0]}, "forces in joints under a load need all modes"),
                           ({"joints": link["joints"] + [{"name": "slot", "type": "pin-in-slot", "bodies": ["ground", "beam.end"], "at": "tip", "axis": [0, 1]}]},
                            "the force of a joint in a loop of joints needs all modes")):
-            done = self.expect(2, "response", self.write("more.json", json.dumps({**link, **more})), "--input", "tip.y", "--output", "joint.root.y")
+            done = self.expect(2, "response", self.write("more.json", json.dumps({**link, **more})), "--input", "tip.y", "--measure", "joint.root.y")
             self.assertIn(why, done.stderr)
 
     def test_joints_carry_what_hangs_on_them(self):
         """The root of a cantilever of 1 kg: slowly it carries the force at the tip, or the mass that the ground accelerates."""
         link = large.link(5000)
         link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
-        done = self.expect(0, "response", self.write("link.json", json.dumps(link)), "--input", "tip.y", "--input", "base.y", "--output", "joint.root.y",
+        done = self.expect(0, "response", self.write("link.json", json.dumps(link)), "--input", "tip.y", "--input", "base.y", "--measure", "joint.root.y",
                            "--from", "0.0005", "--to", "0.001", "--points", "2", "--format", "json")
         for got, want in zip(json.loads(done.stdout)[0]["responses"], (-1.0, 1.0)):
             self.assertAlmostEqual(got["re"][0], want, delta=1e-5)

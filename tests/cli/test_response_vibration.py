@@ -66,7 +66,7 @@ class Vibration(CliTest):
                 for i, damper in enumerate(model["dampers"]):
                     damper["damping_n_s_per_m"] = times * (1 + i * i) * 2.0 ** power
                 path = self.write("chain.json", json.dumps(model))
-                found = self.shaken(path, "--vibration", profile, "--output", "b2.x:relative_displacement")["responses"][0]["vibration"]
+                found = self.shaken(path, "--vibration", profile, "--measure", "b2.x:relative_displacement")["responses"][0]["vibration"]
                 rms.append((found["rms"], found["rms_error_at_most"]))
             for a, error in rms:
                 for b, other in rms:
@@ -79,7 +79,7 @@ class Vibration(CliTest):
         profile = self.profile(axis="x", random={"psd_m2_per_s3": [[1e-9, 2.0], [1e9, 2.0]]})
         for seed, n in ((1, 3), (2, 6), (3, 12)):
             model, m, c, k = chain(seed, n)
-            outputs = [word for i in range(n) for word in ("--output", f"b{i}.x:relative_displacement", "--output", f"b{i}.x:relative_velocity")]
+            outputs = [word for i in range(n) for word in ("--measure", f"b{i}.x:relative_displacement", "--measure", f"b{i}.x:relative_velocity")]
             got = self.shaken(self.write("chain.json", json.dumps(model)), "--vibration", profile, *outputs)
             inverse = numpy.linalg.inv(m)
             a = numpy.block([[numpy.zeros((n, n)), numpy.eye(n)], [-inverse @ k, -inverse @ c]])

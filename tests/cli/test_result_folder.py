@@ -30,7 +30,7 @@ TRADE = ONE_START + ', "trade": { "vary": [ { "variable": "k1", "bound": "upper"
 LINES = {
     "modes": ["modes", "problems/model.json", "--shapes"],
     "mac": ["mac", "problems/model.json:held", "problems/model.json:twice"],
-    "sweep": ["sweep", "problems/model.json", "-c", "held", "--drive", "ra=-0.1:0.1:3", "--modes"],
+    "sweep": ["sweep", "problems/model.json", "-c", "held", "--drive", "ra=-0.1:0.1:3", "--frequencies"],
     "simulate": ["simulate", "problems/model.json", "-c", "held", "--start", "ra=0.1", "--duration", "0.1"],
     "sensitivity": ["sensitivity", "problems/model.json", "-c", "held", "--format", "csv"],
     "response": ["response", "problems/model.json", "-c", "held", "--input", "a.x", "--format", "csv"],

@@ -29,8 +29,8 @@ class Simulate(CliTest):
         self.assertIn(text, done.stderr)
 
     def test_table_csv_and_json_say_the_same(self):
-        asked = (PENDULUM, "-c", "hanging", "--start", "pivot=30*deg", "--duration", "1", "--dt-out", "0.25", "--output", "pivot",
-                 "--output", "tip.x:velocity", "--output", "tip.x:acceleration")
+        asked = (PENDULUM, "-c", "hanging", "--start", "pivot=30*deg", "--duration", "1", "--dt-out", "0.25", "--measure", "pivot",
+                 "--measure", "tip.x:velocity", "--measure", "tip.x:acceleration")
         answer = self.json_of("simulate", *asked)
         rows = list(csv.DictReader(io.StringIO(self.expect(0, "simulate", *asked, "--format", "csv").stdout)))
         self.assertEqual(answer["time_s"], [0, 0.25, 0.5, 0.75, 1])
@@ -60,17 +60,17 @@ class Simulate(CliTest):
 
     def test_a_moved_joint_goes_where_it_is_told(self):
         answer = self.json_of("simulate", FOUR_BAR, "-c", "loaded", "--start", "jA=0.3", "--input", "jA=0.5*sin(4*t)", "--duration", "1",
-                              "--output", "jA")
+                              "--measure", "jA")
         for t, value in zip(answer["time_s"], answer["outputs"][0]["values"]):
             self.assertAlmostEqual(value, 0.3 + 0.5 * math.sin(4 * t), places=12)
 
     def test_the_ground_by_place_velocity_and_acceleration(self):
-        seen = [self.json_of("simulate", PENDULUM, "-c", "hanging", "--input", f"base.x{of}", "--duration", "1", "--output", "pivot")["outputs"][0]["values"]
+        seen = [self.json_of("simulate", PENDULUM, "-c", "hanging", "--input", f"base.x{of}", "--duration", "1", "--measure", "pivot")["outputs"][0]["values"]
                 for of in ("=-0.01*64*sin(8*t)", ":velocity=0.01*8*cos(8*t)", ":displacement=0.01*sin(8*t)")]
         for a, b, c in zip(*seen):
             self.assertAlmostEqual(a, b, places=13)
             self.assertAlmostEqual(a, c, places=13)
-        sine = self.json_of("simulate", PENDULUM, "-c", "hanging", "--sine", "base.x=-0.64@4/pi", "--duration", "1", "--output", "pivot")
+        sine = self.json_of("simulate", PENDULUM, "-c", "hanging", "--sine", "base.x=-0.64@4/pi", "--duration", "1", "--measure", "pivot")
         for a, b in zip(seen[0], sine["outputs"][0]["values"]):
             self.assertAlmostEqual(a, b, places=13)
 
@@ -85,7 +85,7 @@ class Simulate(CliTest):
                        {"name": "e", "type": "fixed", "bodies": ["ground", "b.end"], "at": [1, 1]}],
             "springs": [{"name": "k", "type": "axial", "bodies": ["ground", "m"], "at": [[0, 0], [1, 0]], "stiffness_n_per_m": 800}],
             "sensors": [{"name": "q", "on": "b", "fraction": 0.5, "directions": ["x"]}, {"name": "s", "on": "m", "directions": ["x"]}]}))
-        both = [self.json_of("simulate", model, "--duration", "0.1", "--input", "base.x=3", "--output", "q.x:acceleration", "--output", "s.x:acceleration", *how)
+        both = [self.json_of("simulate", model, "--duration", "0.1", "--input", "base.x=3", "--measure", "q.x:acceleration", "--measure", "s.x:acceleration", *how)
                 for how in ((), ("--integrate",))]
         self.assertEqual([answer["method"] for answer in both], ["exact", "integrated"])
         for answer in both:
@@ -96,9 +96,9 @@ class Simulate(CliTest):
 
     def test_steady_amplitudes_are_read_under_one_sine_alone(self):
         model = str(SOURCE / "tests/models/space_body.json")
-        one = self.json_of("simulate", model, "-c", "damped", "--sine", "base.x=1@3", "--duration", "20", "--output", "s.x")
+        one = self.json_of("simulate", model, "-c", "damped", "--sine", "base.x=1@3", "--duration", "20", "--measure", "s.x")
         self.assertEqual(one["readings"][0]["steady"]["periods"], 10)
-        two = self.json_of("simulate", model, "-c", "damped", "--sine", "base.x=1@3", "--sine", "base.y=1@4", "--duration", "1", "--output", "s.x")
+        two = self.json_of("simulate", model, "-c", "damped", "--sine", "base.x=1@3", "--sine", "base.y=1@4", "--duration", "1", "--measure", "s.x")
         self.assertNotIn("steady", two["readings"][0])
 
     def test_random_vibration_is_that_of_its_seed(self):
@@ -111,16 +111,16 @@ class Simulate(CliTest):
         self.refused("needs --duration SECONDS", *hanging)
         self.refused("4 configurations: choose the one that moves with -c", PENDULUM, "--duration", "1")
         self.refused('there is no joint "pivo"', *hanging, "--duration", "1", "--start", "pivo=1")
-        self.refused('did you mean "pivot"?', *hanging, "--duration", "1", "--output", "pivott")
+        self.refused('did you mean "pivot"?', *hanging, "--duration", "1", "--measure", "pivott")
         self.refused('did you mean "base.x"?', *hanging, "--duration", "1", "--input", "base.z=1")
         self.refused("is not PORT=AMPLITUDE@HZ", *hanging, "--duration", "1", "--sine", "base.x=1")
         self.refused("the frequency is not above 0", *hanging, "--duration", "1", "--sine", "base.x=1@0")
-        self.refused("is not PORT=LEVEL@FROM:TO", *hanging, "--duration", "1", "--sweep", "base.x=1@5")
+        self.refused("is not PORT=LEVEL@FROM:TO", *hanging, "--duration", "1", "--sine-sweep", "base.x=1@5")
         self.refused("two breakpoints or more", *hanging, "--duration", "1", "--random", "base.x=1:1")
         self.refused('unknown name "x"', *hanging, "--duration", "1", "--input", "base.x=x")
-        self.refused("is not displacement, velocity or acceleration", *hanging, "--duration", "1", "--output", "tip.x:speed")
-        self.refused("there are 1 vibration modes", *hanging, "--duration", "1", "--mode", "2:0.1")
-        self.refused("is not N:AMPLITUDE", *hanging, "--duration", "1", "--mode", "0.1")
+        self.refused("is not displacement, velocity or acceleration", *hanging, "--duration", "1", "--measure", "tip.x:speed")
+        self.refused("there are 1 vibration modes", *hanging, "--duration", "1", "--start-mode", "2:0.1")
+        self.refused("is not N:AMPLITUDE", *hanging, "--duration", "1", "--start-mode", "0.1")
         self.refused("samples of", *hanging, "--duration", "1", "--dt-out", "1e-9")
         self.refused("has no finite value", *hanging, "--duration", "1", "--input", "base.x=sqrt(0.5 - t)", code=3)
         self.refused("after", MASSLESS, "-c", "sprung", "--duration", "1", "--input", "base.x=t", code=3)
@@ -134,7 +134,7 @@ class Simulate(CliTest):
         path = self.write("turned.json", json.dumps(model))
         for start in (0.5, -2.5, 3.0):
             told = self.json_of("simulate", path, "-c", "hanging", "--start", f"pivot={start}", "--duration", "1", "--dt-out", "0.05",
-                                "--output", "turn.r", "--output", "pivot")
+                                "--measure", "turn.r", "--measure", "pivot")
             turn, pivot = (o["values"] for o in told["outputs"])
             self.assertAlmostEqual(turn[0], start, delta=1e-9)
             for a, b in zip(turn, pivot):
@@ -147,7 +147,7 @@ class Simulate(CliTest):
                 "joints": [{"name": "j", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": along}],
                 "springs": [{"name": "k", "type": "torsion", "joint": "j", "stiffness_n_m_per_rad": 3}],
                 "sensors": [{"name": "s", "on": "a", "directions": ["rx", "ry", "rz"]}], "configurations": {"c": {}}}))
-            told = self.json_of("simulate", path, "--start", "j=0.7", "--duration", "0.1", "--output", f"s.{name}")
+            told = self.json_of("simulate", path, "--start", "j=0.7", "--duration", "0.1", "--measure", f"s.{name}")
             self.assertAlmostEqual(told["outputs"][0]["values"][0], 0.7, delta=1e-9)
 
     def test_dead_centres_are_refused_with_the_names_of_their_joints(self):

@@ -32,7 +32,7 @@ class Vibration(CliTest):
         realised = set()
         seeds = ("1", "2", "3")[:3 if EVERY else 1]
         for seed in seeds:
-            got = self.moved(model, "--vibration", profile, "--seed", seed, "--duration", str(end), "--dt-out", "0.002", "--output", "a.x:acceleration",
+            got = self.moved(model, "--vibration", profile, "--seed", seed, "--duration", str(end), "--dt-out", "0.002", "--measure", "a.x:acceleration",
                              "--tolerance", "1e-8")
             found = numpy.array(got["outputs"][0]["values"])[int(begin / 0.002):]
             self.assertLess(abs(math.sqrt(numpy.mean(found ** 2)) / rms - 1), 3 * sigma, seed)
@@ -47,7 +47,7 @@ class Vibration(CliTest):
             entry["damping_n_s_per_m"] *= 10
         path = self.write("chain.json", json.dumps(model))
         profile = self.profile(axis="x", random={"psd_m2_per_s3": [[0.3, 2], [40, 2]]})
-        outputs = [word for i in range(4) for word in ("--output", f"b{i}.x:acceleration")]
+        outputs = [word for i in range(4) for word in ("--measure", f"b{i}.x:acceleration")]
         said = self.json_of("response", path, "-c", "default", "--vibration", profile, *outputs)
         got = self.moved(path, "--vibration", profile, "--duration", "45", "--dt-out", "0.005", "--tolerance", "1e-7", *outputs)
         for a, b in zip(said["responses"], got["outputs"]):
@@ -57,13 +57,13 @@ class Vibration(CliTest):
     def test_tones_are_what_they_say(self):
         model = self.write("one.json", json.dumps(one_mass(0.3, 50.0)))
         still = self.profile(tones=[{"frequency_hz": [5, 5], "acceleration_g": 1.5}])
-        got = self.moved(model, "--vibration", f"base.x={still}", "--duration", "1", "--dt-out", "0.01", "--output", "a.x")
-        same = self.moved(model, "--sine", f"base.x={1.5 * G!r}@5", "--duration", "1", "--dt-out", "0.01", "--output", "a.x")
+        got = self.moved(model, "--vibration", f"base.x={still}", "--duration", "1", "--dt-out", "0.01", "--measure", "a.x")
+        same = self.moved(model, "--sine", f"base.x={1.5 * G!r}@5", "--duration", "1", "--dt-out", "0.01", "--measure", "a.x")
         self.assertEqual(got["outputs"][0]["values"], same["outputs"][0]["values"])
         self.assertEqual(got["vibration"]["port"], "base.x")
         wide = self.profile(axis="x", tones=[{"frequency_hz": [5, 9], "acceleration_g": 1.5}])
-        got = self.moved(model, "--vibration", wide, "--duration", "1", "--dt-out", "0.01", "--output", "a.x")
-        same = self.moved(model, "--sweep", f"base.x={1.5 * G!r}@5:9", "--duration", "1", "--dt-out", "0.01", "--output", "a.x")
+        got = self.moved(model, "--vibration", wide, "--duration", "1", "--dt-out", "0.01", "--measure", "a.x")
+        same = self.moved(model, "--sine-sweep", f"base.x={1.5 * G!r}@5:9", "--duration", "1", "--dt-out", "0.01", "--measure", "a.x")
         self.assertEqual(got["outputs"][0]["values"], same["outputs"][0]["values"])
         text = self.expect(0, "simulate", model, "--vibration", "base.x=gevs_qualification", "--duration", "0.05").stdout
         self.assertRegex(text, r"base.x is shaken by GEVS, qualification: random parts of 1\d\.\d+ g RMS in this realisation \(seed 1\), 14.136 g in the profile")
@@ -82,7 +82,7 @@ class Vibration(CliTest):
     def test_numbers_are_in_the_models_units(self):
         model = json.loads(PENDULUM.read_text(encoding="utf-8"))
         degrees = self.write("degrees.json", json.dumps(model | {"units": {"angle": "deg"}}))
-        asked = ("-c", "hanging", "--duration", "0.2", "--output", "pivot")
+        asked = ("-c", "hanging", "--duration", "0.2", "--measure", "pivot")
         for option, plain, there in (("--start", "0.3", "0.3"), ("--rate", "1", "1"), ("--start", "30*deg", "30*deg")):
             own = self.json_of("simulate", str(PENDULUM), option, f"pivot={plain}", *asked)
             if plain[-1] != "g":

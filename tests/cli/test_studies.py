@@ -20,14 +20,14 @@ STAGES = ["program", "geometry", "tangent", "reduction", "stiffness", "mass", "m
 
 
 def stages(text):
-    """Of --profile: stage to how often it was done, shared and skipped."""
+    """Of --timing: stage to how often it was done, shared and skipped."""
     rows = re.findall(r"^  (\w+) +(\d+) +(\d+) +(\d+) +\S+ +\w", text, re.M)
     return {name: tuple(map(int, counts)) for name, *counts in rows}
 
 
 class Profile(CliTest):
     def test_stages_of_modes_are_done_once(self):
-        done = self.expect(0, "modes", self.write("model.json", MODEL), "--profile", "--format", "json")
+        done = self.expect(0, "modes", self.write("model.json", MODEL), "--timing", "--format", "json")
         n = len(json.loads(done.stdout))  # configurations
         counts = stages(done.stderr)
         self.assertEqual(list(counts), STAGES)
@@ -37,7 +37,7 @@ class Profile(CliTest):
         path = self.write("studies/two.json", study())
         without = self.expect(0, "run", path, "-o", "a")
         self.assertNotIn("geometry", without.stderr)
-        counts = [stages(self.expect(0, "run", path, "-o", str(n), "--profile", "--threads", str(n)).stderr) for n in (1, 2)]
+        counts = [stages(self.expect(0, "run", path, "-o", str(n), "--timing", "--threads", str(n)).stderr) for n in (1, 2)]
         for had in counts:
             self.assertEqual(list(had), STAGES)
             self.assertEqual(had["tangent"], (0, 0, 0))  # springs alone vary: the geometry stands

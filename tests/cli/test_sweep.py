@@ -55,7 +55,7 @@ class Sweep(CliTest):
 
     def test_positions_end_at_a_thousand_radians_or_lengths(self):
         for words, said in ((("shaft=0:1e12:3",), r"shaft goes to 5e\+11 rad, and at most to 1000 rad"),
-                            (("shaft=-1e308:1e308:3", "--modes"), r"shaft goes to -1e\+308 rad, and at most to 1000 rad"),
+                            (("shaft=-1e308:1e308:3", "--frequencies"), r"shaft goes to -1e\+308 rad, and at most to 1000 rad"),
                             (("bore=1e6:1e7:2",), r"bore goes to 1e\+06 m, and at most to \d+(\.\d+)? m")):
             done = self.expect(2, "sweep", self.slider, "--drive", *words)
             self.assertRegex(done.stderr, f"error: --drive: {said} from the reference position\n$")
@@ -87,27 +87,27 @@ class Sweep(CliTest):
                          next(j["ratio"] for j in points[3]["joints"] if j["name"] == "shaft"))
 
     def test_frequencies_locked_and_trimmed(self):
-        lock = self.json_of("sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:30*deg:3", "--modes")
+        lock = self.json_of("sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:30*deg:3", "--frequencies")
         for point in lock["points"]:
             self.assertEqual(len(point["frequencies_hz"]), 1)
             self.assertAlmostEqual(point["frequencies_hz"][0] / (math.sqrt(3 / 0.004) / (2 * math.pi)), 1, delta=TOL)
             weight = 1.5 * 9.81 * 0.8 * math.sin(point["position_rad"])
             self.assertAlmostEqual(point["hold_n_m"], weight + 40 * point["position_rad"], delta=1e-9)
-        trim = self.json_of("sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:30*deg:3", "--modes", "--hold", "servo")
+        trim = self.json_of("sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:30*deg:3", "--frequencies", "--hold", "servo")
         self.assertEqual((trim["hold"], trim["spring"]), ("trim", "servo"))
         want = self.json_of("modes", self.rod, "-c", "trimmed")["modes"]
         for got, mode in zip(trim["points"][2]["frequencies_hz"], want):
             self.assertAlmostEqual(got / mode["frequency_hz"], 1, delta=TOL)
-        some = self.json_of("sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:1:2", "--modes", "--hold", "servo",
+        some = self.json_of("sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:1:2", "--frequencies", "--hold", "servo",
                             "--count", "1")
         self.assertEqual([len(p["frequencies_hz"]) for p in some["points"]], [1, 1])
 
     def test_text_has_units_and_set_is_obeyed(self):
         text = self.expect(0, "sweep", self.rod, "-c", "sprung", "--drive", "pivot=0:angle:3", "--set", "angle=1",
-                           "--modes").stdout
+                           "--frequencies").stdout
         self.assertRegex(text, r"  pivot \[rad\] +axle \[rad\] +per pivot +lock \[N m\] +mode 1 \[Hz\]\n")
         self.assertIn("\n     1.00000 ", text)
-        nothing = self.expect(0, "sweep", self.slider, "--drive", "shaft=0:1:2", "--modes").stdout
+        nothing = self.expect(0, "sweep", self.slider, "--drive", "shaft=0:1:2", "--frequencies").stdout
         self.assertIn("No vibration modes", nothing)
 
     def test_wrong_use(self):
@@ -130,7 +130,7 @@ class Sweep(CliTest):
         wrong('--drive: 1/: at character 3: the expression ends where a number, a name or "(" is expected', "--drive", "pivot=1/:1:2")
 
     def test_csv_holds_every_configuration_with_the_same_joints(self):
-        args = ("sweep", self.rod, "--drive", "pivot=0:0.5:2", "--modes")
+        args = ("sweep", self.rod, "--drive", "pivot=0:0.5:2", "--frequencies")
         rows = list(csv.DictReader(io.StringIO(self.expect(0, *args, "--format", "csv").stdout)))
         want = self.json_of(*args)
         self.assertEqual([r["configuration"] for r in rows], ["sprung"] * 2 + ["locked"] * 2 + ["trimmed"] * 2)
@@ -155,9 +155,9 @@ class Sweep(CliTest):
 
     def test_free_and_unstable_positions_are_said(self):
         free = self.write("problems/free.json", DAMPED)
-        text = self.expect(0, "sweep", free, "--drive", "ja=0:0.1:2", "--modes").stdout
+        text = self.expect(0, "sweep", free, "--drive", "ja=0:0.1:2", "--frequencies").stdout
         self.assertIn("  1 rigid-body mode: it can move freely.\n", text)
-        rod = ("sweep", self.rod, "-c", "sprung", "--modes", "--set", "k_d=-1", "--drive")
+        rod = ("sweep", self.rod, "-c", "sprung", "--frequencies", "--set", "k_d=-1", "--drive")
         self.assertIn("  UNSTABLE at 3 positions: they do not hold.\n", self.expect(0, *rod, "pivot=0:0.5:3").stdout)
         self.assertIn("  UNSTABLE at 1 position: it does not hold.\n", self.expect(0, *rod, "pivot=0:0:1").stdout)
         rows = list(csv.DictReader(io.StringIO(self.expect(0, *rod, "pivot=0:0.5:3", "--format", "csv").stdout)))

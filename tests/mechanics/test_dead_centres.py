@@ -240,7 +240,7 @@ class DeadCentres(MechanismTest):
         for space in (False, True):
             m = parallelogram(1)
             model = (m.in_space() if space else m).model()
-            for more in ((), ("--modes",)):
+            for more in ((), ("--frequencies",)):
                 points = self.answer(model, "sweep", "--drive", "j0=-1.5:0:16", *more, code=3)["points"]
                 wrong = [p["position_rad"] for p in points if "error" in p]
                 self.assertEqual(wrong, [-1.0])

@@ -52,7 +52,7 @@ def prepare(rng, model, answer):
     period = 1 / hz[0]
     sample = max(1 / hz[-1] / SAMPLES, PERIODS * period / MOST_SAMPLES)
     start = SMALL * _size(model)
-    return out, start, ["--mode", f"{rng.randint(1, len(hz))}:{start!r}", "--duration", repr(PERIODS * period), "--dt-out", repr(sample)]
+    return out, start, ["--start-mode", f"{rng.randint(1, len(hz))}:{start!r}", "--duration", repr(PERIODS * period), "--dt-out", repr(sample)]
 
 
 def compare(motion, damped, start):

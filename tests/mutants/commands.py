@@ -131,7 +131,7 @@ def commands(rng, case):
         yield ["response", file, "--input", "base.x", "--points", "5", *form(), "--vibration", rng.choice(("gevs_qualification", "helicopter_uh60_panel"))]
         joints = _moving(case.original)
         if joints:
-            yield ["sweep", file, "-c", rng.choice(configurations), "--drive", f"{rng.choice(joints)}=-0.1:0.1:3", *form(), *rng.choice(([], ["--modes"]))]
+            yield ["sweep", file, "-c", rng.choice(configurations), "--drive", f"{rng.choice(joints)}=-0.1:0.1:3", *form(), *rng.choice(([], ["--frequencies"]))]
             yield ["simulate", file, "-c", rng.choice(configurations), "--rate", f"{rng.choice(joints)}=0.1", "--duration", "1e-3", "--dt-out", "5e-4", "--time", "2", *form()]
         yield ["show", file, *rng.choice((["--svg"], ["--format", "json"], ["--format", "json"]))]
         yield ["mac", f"{file}:{rng.choice(configurations)}", f"{file}:{rng.choice(configurations)}", *form()]

@@ -62,7 +62,7 @@ class Peers(unittest.TestCase):
 
     def test_double_pendulum(self):
         times, seen, answer = self.simulate(DOUBLE, "--start", "top=2.0", "--start", "elbow=-0.6", "--rate", "top=1.5", "--rate", "elbow=-2",
-                                            "--duration", "3", "--dt-out", "0.1", "--output", "top", "--output", "elbow", "--output", "top:velocity")
+                                            "--duration", "3", "--dt-out", "0.1", "--measure", "top", "--measure", "elbow", "--measure", "top:velocity")
         peer = solve_ivp(double, (0, 3), [2.0, 1.4, 1.5, -0.5], method="DOP853", rtol=1e-13, atol=1e-13, t_eval=times)
         self.assertLess(np.abs(seen[0] - peer.y[0]).max(), 1e-8)
         self.assertLess(np.abs(seen[1] - (peer.y[1] - peer.y[0])).max(), 1e-8)
@@ -70,8 +70,8 @@ class Peers(unittest.TestCase):
         self.assertLess(answer["energy_error_j"], 1e-9 * answer["energy_scale_j"])
 
     def test_elastic_pendulum_with_a_damper_on_a_shaking_ground(self):
-        times, seen, _ = self.simulate(SPRUNG, "--input", "base.x=3*sin(9*t)", "--duration", "4", "--dt-out", "0.05", "--output", "s.x",
-                                       "--output", "s.y", "--output", "s.x:velocity", "--output", "s.x:acceleration")
+        times, seen, _ = self.simulate(SPRUNG, "--input", "base.x=3*sin(9*t)", "--duration", "4", "--dt-out", "0.05", "--measure", "s.x",
+                                       "--measure", "s.y", "--measure", "s.x:velocity", "--measure", "s.x:acceleration")
         rest = -LENGTH - MASS * G / K  # where the spring carries the weight
         peer = solve_ivp(sprung, (0, 4), [0, rest, 0, 0], method="DOP853", rtol=1e-13, atol=1e-13, t_eval=times)
         self.assertLess(np.abs(seen[0] - peer.y[0]).max(), 1e-9)

@@ -100,7 +100,7 @@ class Starts(unittest.TestCase):
         self.path.write_text(json.dumps(model), encoding="utf-8")
         done = subprocess.run([PROGRAM, "simulate", self.path, "--duration", "1e-4", "--dt-out", "1e-4", "--format", "json", "--quiet"]
                               + [a for j, v in held.items() for a in ("--start", f"j{j}={v!r}")]
-                              + [a for j in model["joints"] for a in ("--output", j["name"])],
+                              + [a for j in model["joints"] for a in ("--measure", j["name"])],
                               capture_output=True, text=True, check=False, timeout=60)
         if done.returncode != 0:
             return done.returncode, None, done.stderr
