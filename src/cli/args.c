@@ -743,7 +743,8 @@ static mt_status read_short(mt_args *args, int argc, char *const argv[], int *at
     return mt_fail(err, MT_E_USAGE, "unknown option \"-%s\"", text);
 }
 
-int mt_command_named(const mt_command *const *commands, const char *name)
+/* The command of that name among these [MT_CMD_IDS]; MT_CMD_NONE: none. */
+static int find_command(const mt_command *const *commands, const char *name)
 {
     for (int i = 0; i < MT_CMD_IDS; i++) {
         if (strcmp(commands[i]->name, name) == 0) {
@@ -757,7 +758,7 @@ static mt_status read_command(mt_args *args, const char *name, mt_err *err)
 {
     const char *names[MT_CMD_IDS];
     char suggestion[SUGGESTION_TEXT];
-    args->command = mt_command_named(args->commands, name);
+    args->command = find_command(args->commands, name);
     if (args->command != MT_CMD_NONE) {
         return MT_OK;
     }

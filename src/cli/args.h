@@ -146,8 +146,6 @@ typedef struct mt_exit {
 enum { MT_EXITS = 6 };
 
 extern const mt_option mt_options[MT_OPT_IDS];
-/* The command of that name among these [MT_CMD_IDS]; MT_CMD_NONE: none. */
-int mt_command_named(const mt_command *const *commands, const char *name);
 extern const mt_exit mt_exits[MT_EXITS];
 
 /* True where the command takes the option; MT_CMD_NONE: the program. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune info: what each configuration weighs and how it can move. */
+/* modetune info: of a model what each configuration weighs and how it can move; of other files
+ * what they hold. */
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,6 +10,7 @@
 #include "base/format.h"
 #include "base/text.h"
 #include "cli/cli.h"
+#include "cli/file_info.h"
 #include "io/write_json.h"
 #include "mechanics/info.h"
 #include "mechanics/linear.h"
@@ -711,7 +713,7 @@ static mt_status show_configuration_info(const mt_args *args, view *v, const sin
     return MT_OK;
 }
 
-static int run_info(const mt_args *args, mt_text *out)
+static int tell_model(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
@@ -764,14 +766,29 @@ done:
     return code;
 }
 
+static int run_info(const mt_args *args, mt_text *out)
+{
+    bool is_model = false;
+    const int code = mt_file_info(args, &is_model, out);
+    return is_model ? tell_model(args, out) : code;
+}
+
 const mt_command mt_command_info = {
     .name = "info",
-    .operands = "MODEL",
+    .operands = "FILE",
     .least = 1,
     .most = 1,
-    .summary = "masses, mobility and redundancies of each configuration",
+    .summary = "what a file holds; of a model its masses, mobility and redundancies",
     .details =
-        "Prints for each configuration, in the position about which it is linearised, the "
+        "Prints what a file holds that modetune reads or writes: a study, a result or its "
+        "folder, a profile, a catalogue of aircraft, measured responses (CSV, universal "
+        "files), "
+        "a journal, an index, a scene. It gives kind, format and author, variables, goals, "
+        "designs with their frequencies, tones, channels and ranges, the files that it names "
+        "and "
+        "whether they are found, and what is doubtful.\n"
+        "Of a model it prints for each configuration, in the position about which it is "
+        "linearised, the "
         "total mass, its centre and inertia, the degrees of freedom, and the sets of "
         "redundant joints. Where a number of the model depends on a sign, an axis or an "
         "order of bodies (preloads, free angles, moments, gear ratios, products of "

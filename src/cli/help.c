@@ -634,7 +634,10 @@ static int show_topic(const mt_args *args, mt_text *out)
     }
     const char *const topic = args->operands[0];
     show_all(topic, BY_HEADINGS, &last, out);
-    const int command = mt_command_named(args->commands, topic);
+    int command = MT_CMD_IDS - 1;
+    while (command != MT_CMD_NONE && strcmp(args->commands[command]->name, topic) != 0) {
+        command--;
+    }
     if (last == NULL && command != MT_CMD_NONE) {
         print_help(args->commands, command, out);
         return MT_EXIT_DONE;

@@ -84,6 +84,11 @@ mt_status mt_result_take_warnings(mt_result *result, const mt_warning_list *list
     return MT_OK;
 }
 
+const char *mt_result_warning(const mt_result *result, int i)
+{
+    return i < result->n_doubts ? result->doubts[i].text : NULL;
+}
+
 mt_status mt_recommendation_copy(const mt_recommendation *from, const mt_recommendation *like,
                                  mt_arena *mem, mt_recommendation *out, mt_err *err)
 {

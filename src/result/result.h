@@ -498,6 +498,8 @@ mt_result_mark mt_result_get_mark(const mt_result *result);
 void mt_result_take_back(mt_result *result, const mt_result_mark *mark);
 /* Copy the warnings and notes of a list into the result. Fails: MT_E_MEMORY. */
 mt_status mt_result_take_warnings(mt_result *result, const mt_warning_list *list, mt_err *err);
+/* The text of warning i about the study, from 0; NULL beyond the last. */
+const char *mt_result_warning(const mt_result *result, int i);
 /* A deep copy of a recommendation, which may outlive its result. Content that equals that of
  * `like` (NULL: none) is shared with it and lives as long. Fails: MT_E_MEMORY. */
 mt_status mt_recommendation_copy(const mt_recommendation *from, const mt_recommendation *like,

@@ -149,6 +149,10 @@ static const struct {
     {"info " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
     {"info --set xyz=1 " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
     {"info %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"info studies/engine_orders.json", MT_EXIT_DONE, AS_IT_IS},
+    {"info LICENSE", MT_EXIT_INPUT, AS_IT_IS},
+    {"info %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"info studies/engine_orders.json", MT_EXIT_SYSTEM, FULL},
     {"info " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
     {"info " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 

@@ -55,6 +55,11 @@ static const struct {
     {"info " MODELS "space_stick.json", MT_EXIT_DONE},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},
+    {"info tests/documents/good/study_full.json", MT_EXIT_DONE},
+    {"info --format json problems/measurements/three_masses.csv", MT_EXIT_DONE},
+    {"info --format csv tests/documents/good/profile.json", MT_EXIT_DONE},
+    {"info problems/aircraft.json", MT_EXIT_DONE},
+    {"info tests/result/written_by/2026-11-27/inceptor_tuning_1.1-of-2.journal", MT_EXIT_DONE},
     {"sweep --drive pivot=-0.1:0.1:3 --frequencies " MODELS "driven_rod.json", MT_EXIT_DONE},
     {"simulate --vibration base.y=tests/documents/good/profile.json -c still --duration 0.01 "
      "--format "
@@ -81,6 +86,8 @@ static const struct {
     {"compare --threads 1 --format json studies/inceptor_catalogue.json", MT_EXIT_DONE},
     {"compare --threads 1 --set m_raft=21 --starts 4 studies/engine_orders.json", MT_EXIT_DONE},
     {"check @/engine_orders/result.json", MT_EXIT_DONE},
+    {"info @/engine_orders", MT_EXIT_DONE},
+    {"info --format json @/engine_orders/timing.json", MT_EXIT_DONE},
     {"examples", MT_EXIT_DONE},
     {"schema --format json", MT_EXIT_DONE},
     {"profile --spectrum 10:90:3 tests/documents/good/profile.json", MT_EXIT_DONE},
