@@ -13,7 +13,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 MODULE = HERE.parent / "src/library/python/modetune/types.py"
-FORMATS = ("model", "study", "aircraft", "profile", "result", "index", "progress", "scene")
+FORMATS = ("model", "study", "aircraft", "profile", "result", "index", "progress", "scene",
+           *sorted(path.name.removesuffix(".schema.json") for path in HERE.glob("command_*.schema.json")))
 WIDTH = 96
 SCALARS = {"string": "str", "number": "float", "integer": "int", "boolean": "bool", "null": "None"}
 # what a type is made of, and what bounds it only or is for people
@@ -24,7 +25,8 @@ BOUNDING = {"$schema", "$comment", "title", "description", "default", "examples"
 HEAD = '''\
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Written from the schemas by the target schemas (schemas/python_types.py): do not edit.
-"""Types of what the files hold, for editors and checkers of types: Study, Model, Result, ...
+"""Types of what the files hold, and of what commands print as JSON (CommandModes, ...), for
+editors and checkers of types: Study, Model, Result, ...
 
     from modetune.types import Study
     study: Study = {"format": "modetune-study/1", "model": "stick.json", "goals": []}
@@ -57,7 +59,7 @@ class Document:
 
     def __init__(self, name, schema):
         self.prefix, self.schema, self.parts, self.names = camel(name), schema, [], set()
-        self.reserved = {self.prefix + camel(key) for key in schema.get("definitions", {})} | {self.prefix + camel(singular(key)) for key in schema["properties"]}
+        self.reserved = {self.prefix + camel(key) for key in schema.get("definitions", {})} | {self.prefix + camel(singular(key)) for key in schema.get("properties", {})}
 
     def write(self):
         for name, part in self.schema.get("definitions", {}).items():
@@ -69,7 +71,10 @@ class Document:
                 self.make_class(own, part, (name,))
             else:
                 self.parts.append((own, f"{own} = {self.type_of(part, (name,))}\n"))
-        self.make_class(self.prefix, self.schema, ())
+        if "properties" in self.schema:
+            self.make_class(self.prefix, self.schema, ())
+        else:  # what a command prints: one of its definitions, or a list of them
+            self.parts.append((self.prefix, f"{self.prefix} = {self.type_of(self.schema, (self.prefix,))}\n"))
         return self.parts
 
     def make_class(self, name, part, place):

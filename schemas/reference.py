@@ -12,7 +12,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 PAGE = HERE / "README.md"
-FORMATS = ("model", "study", "aircraft", "profile", "result", "index", "progress", "scene")
+COMMANDS = tuple(sorted(path.name.removesuffix(".schema.json") for path in HERE.glob("command_*.schema.json")))
+FORMATS = ("model", "study", "aircraft", "profile", "result", "index", "progress", "scene", *COMMANDS)
 WIDTH = 96
 
 HEAD = """\
@@ -20,11 +21,11 @@ HEAD = """\
 
 # File formats
 
-This page lists every member of every JSON file that modetune reads or writes: its type, its
-unit, its default and its meaning. [problems/README.md](../problems/README.md) explains models
-by examples, [studies/README.md](../studies/README.md) explains studies. `modetune help NAME`
-prints what the pages say of a member; `modetune check FILE` reads a file as strictly as the
-program does.
+This page lists every member of every JSON file that modetune reads or writes, and of what its
+commands print as JSON: its type, its unit, its default and its meaning.
+[problems/README.md](../problems/README.md) explains models by examples,
+[studies/README.md](../studies/README.md) explains studies. `modetune help NAME` prints what the
+pages say of a member; `modetune check FILE` reads a file as strictly as the program does.
 
 ## How to read an entry
 
@@ -72,12 +73,16 @@ version of modetune may add a member under the same number; the meaning of a mem
 changes under it. The program refuses a number or a member that it does not know and reports the
 place, so it never half understands a file that was written for a newer version. A program with
 a new format number will also read this one, and the changelog will say what to change.
+
+What a command prints has no number of its own: its schema, `modetune schema command_NAME`, is of
+the program that prints it.
 """
 
 UNITS = (("_n_m_s_per_rad", "N m s/rad"), ("_n_m_per_rad", "N m/rad"), ("_n_s_per_m", "N s/m"), ("_n_per_m", "N/m"),
          ("_kg_per_m3", "kg/m^3"), ("_kg_m2", "kg m^2"), ("_m_per_rad", "m/rad"), ("_m_per_s2", "m/s^2"), ("_m2_per_s3", "m^2/s^3"),
          ("_g2_per_hz", "g^2/Hz"), ("_db_per_octave", "dB/octave"), ("_n_m", "N m"), ("_percent", "%"), ("_rad", "rad"),
-         ("_deg", "degrees"), ("_rpm", "rpm"), ("_hz", "Hz"), ("_kg", "kg"), ("_pa", "Pa"), ("_m2", "m^2"), ("_m4", "m^4"), ("mass_per_s", "1/s"),
+         ("_deg", "degrees"), ("_rpm", "rpm"), ("_hz", "Hz"), ("_kg", "kg"), ("_pa", "Pa"), ("_m2", "m^2"), ("_m4", "m^4"), ("_rad_per_s", "rad/s"), ("_m_per_s", "m/s"),
+         ("_per_s", "1/s"),
          ("_n", "N"), ("_s", "s"), ("_m", "m"), ("_g", "g"))
 # What says something of the members of an object together, or of a value; all else has an entry of its own.
 KNOWN = {"$schema", "$comment", "title", "description", "type", "properties", "definitions", "required", "additionalProperties", "enum", "const", "items",
@@ -147,8 +152,11 @@ class Format:
             if "if" in case:
                 kind = case["if"]["properties"]["type"]["const"]
                 new["kinds"].append((kind, self.section(self.resolve(case["then"])[0], f"`{kind}`", place)))
+        if "properties" not in schema:  # what a command prints: one of its definitions, or a list of them
+            for name in dict.fromkeys(re.findall(r'"#/definitions/(\w+)"', json.dumps(schema["anyOf"]))):
+                self.section(self.schema["definitions"][name], f"`{name}`", "/N")
         # depth first: the sections of its objects follow
-        for member, value in schema["properties"].items():
+        for member, value in schema.get("properties", {}).items():
             new["entries"].append((member, value, self.kind(value, member, f"{place}/{member}")))
         return new
 
@@ -196,7 +204,8 @@ class Page:
     def __init__(self):
         self.formats = [Format(name) for name in FORMATS]
         self.slugs, self.anchors = {}, {}
-        self.titles = {f.name: f"{f.name.capitalize()}: `{f.schema['properties']['format']['enum'][0]}`" for f in self.formats}
+        self.titles = {f.name: f"Answer: `{f.schema['title']}`" if f.name in COMMANDS else
+                       f"{f.name.capitalize()}: `{f.schema['properties']['format']['enum'][0]}`" for f in self.formats}
         for line in re.findall(r"^#+ (.*)$", HEAD, re.M):
             self.slug(line)
         for form in self.formats:
@@ -257,7 +266,7 @@ class Page:
         out = []
         for s in [schema] + [c for c in schema.get("allOf", []) if "if" not in c]:
             out += [f"Exactly one of {listed(sets(s['oneOf']), 'and')} is given."] if "oneOf" in s else []
-            out += [f"At least one of {listed(sets(s['anyOf']), 'and')} is given."] if "anyOf" in s else []
+            out += [f"At least one of {listed(sets(s['anyOf']), 'and')} is given."] if "anyOf" in s and "properties" in s else []
             for case in s["not"].get("anyOf", [s["not"]]) if "not" in s else []:
                 out.append(f"Not both {sets([case])[0]} are given.")
             for member, others in s.get("dependencies", {}).items():
@@ -268,12 +277,15 @@ class Page:
         schema = section["schema"]
         text = [schema["description"]] if "description" in schema else []
         places = [p for p in section["places"] if p]
-        written = form.name in ("result", "index", "progress", "scene")
-        later = set(schema["properties"]) - set(schema.get("required", [])) if written else set()
-        everything = written or set(schema.get("required", [])) == set(schema["properties"])
+        printed = form.name in COMMANDS
+        written = form.name in ("result", "index", "progress", "scene") or printed
+        properties = schema.get("properties", {})
+        later = set(properties) - set(schema.get("required", [])) if written else set()
+        everything = written or set(schema.get("required", [])) == set(properties)
         said = "Every member is required." if not written else "Every member is always there." if not later else \
+            "Every member is always there, but those marked as sometimes." if printed else \
             "Every member is always there, but files that older programs wrote may lack those marked as later."
-        text += [said] if everything and len(schema["properties"]) > 1 and not any("Every member is" in t for t in text) else []
+        text += [said] if everything and len(properties) > 1 and not any("Every member is" in t for t in text) else []
         text += self.together(schema)
         text += [examples(schema).strip()] if "examples" in schema else []
         lines = [title, ""]
@@ -281,8 +293,8 @@ class Page:
             more = f" and {len(places) - 4} more." if len(places) > 4 else "."
             lines += [filled("Place: " + ", ".join(f"`{p}`" for p in places[:4]) + more), ""]
         if text:
-            lines += [filled(" ".join(text)), ""]
-        lines += [self.entry(form, "later" if m in later else "required" if m in schema.get("required", []) and not everything else None, m, s, kind)
+            lines += [filled(" ".join(text))] + ([""] if section["entries"] else [])
+        lines += [self.entry(form, "sometimes" if m in later and printed else "later" if m in later else "required" if m in schema.get("required", []) and not everything else None, m, s, kind)
                   for m, s, kind in section["entries"]]
         if section["kinds"]:
             kinds = ", ".join(f"[`{kind}`](#{self.anchors[id(s)]})" for kind, s in section["kinds"])

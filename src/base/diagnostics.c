@@ -358,6 +358,19 @@ static const char *text(mt_warning_list *list, const char *s)
     return s == NULL ? NULL : mt_arena_strdup(list->mem, s);
 }
 
+mt_warning *mt_warning_pick(const mt_warning_list *list, mt_warning_level level, mt_arena *mem,
+                            int *n)
+{
+    mt_warning *const out = mt_arena_alloc(mem, (size_t)list->n, sizeof *out);
+    *n = 0;
+    for (int i = 0; i < list->n && out != NULL; i++) {
+        if (list->items[i].level == level) {
+            out[(*n)++] = list->items[i];
+        }
+    }
+    return out;
+}
+
 void mt_warning_copy(mt_warning_list *list, const mt_warning *item)
 {
     mt_warning copy = *item;

@@ -187,6 +187,9 @@ mt_warning *mt_warning_add(mt_warning_list *list, mt_warning_level level, const 
 void mt_warning_sort(mt_warning_list *list, int first);
 /* Turn accepted warnings from `first` on into notes that say so. */
 void mt_warning_accept(mt_warning_list *list, int first, const mt_accepted *accepted);
+/* The items of that level, *n of them in mem, which remembers a shortage; texts are shared. */
+mt_warning *mt_warning_pick(const mt_warning_list *list, mt_warning_level level, mt_arena *mem,
+                            int *n);
 /* Copy an item with all its texts into another list. */
 void mt_warning_copy(mt_warning_list *list, const mt_warning *item);
 

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "io/options.h"
+#include "result/record.h"
 
 typedef enum mt_shell { MT_SHELL_BASH, MT_SHELL_ZSH, MT_SHELL_COUNT } mt_shell;
 
@@ -127,6 +128,19 @@ typedef struct mt_option {
 
 typedef struct mt_args mt_args;
 
+/* What --format json prints, from which its schema is written (schemas/command_NAME): */
+typedef enum mt_answer_form {
+    MT_ANSWER_ONE, /* the record */
+    /* the record of each configuration in a list, of one that failed mt_failed_record; where -c
+     * names it that one, without the list */
+    MT_ANSWER_CONFIGURATIONS
+} mt_answer_form;
+
+typedef struct mt_answer {
+    const mt_record *record; /* NULL: no schema */
+    mt_answer_form form;
+} mt_answer;
+
 typedef struct mt_command {
     const char *name;
     const char *operands; /* "STUDY..." */
@@ -134,6 +148,7 @@ typedef struct mt_command {
     int most;             /* -1: any number */
     const char *summary;  /* one line */
     const char *details;  /* paragraphs, one a line */
+    mt_answer answer;
     /* Append the standard output to `out`, write messages and problems to standard error;
      * returns the exit status. */
     int (*run)(const mt_args *args, mt_text *out);

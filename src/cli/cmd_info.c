@@ -512,6 +512,19 @@ static void text_damping(mt_text *out, const view *v)
     mt_text_add(out, n > 0 ? "\n" : "");
 }
 
+static mt_status json_redundant(mt_json_writer *w, view *v, mt_err *err)
+{
+    int n = 0;
+    mt_joints_row *rows = NULL;
+    MT_TRY(mt_cli_redundant(v->a->lin, &v->mem, &n, &rows, err));
+    mt_json_open(w, "redundant_constraints", '[');
+    for (int k = 0; k < n; k++) {
+        mt_record_put_object(w, NULL, &mt_joints_record, &rows[k], 0, NULL);
+    }
+    mt_json_close(w);
+    return MT_OK;
+}
+
 static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
 {
     const mt_info *const i = &v->info;
@@ -537,7 +550,7 @@ static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
     mt_json_put_integer(w, "freedoms", i->freedoms);
     mt_json_put_integer(w, "idle_spins", i->free_spins);
     mt_json_put_integer(w, "redundant_equations", i->redundant);
-    MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->mem, err));
+    MT_TRY(json_redundant(w, v, err));
     mt_json_put_number(w, "equilibrium_residual", i->residual);
     mt_json_put_number(w, "gap_m", i->gap_m);
     json_damping(w, v);

@@ -34,20 +34,10 @@ static int index_of_mode(const mt_modes *modes, int pos)
     return has ? mt_modal_index(modes, pos) : 0;
 }
 
-static const char *mode_kind_name(mt_mode_kind kind)
-{
-    switch (kind) {
-    case MT_MODE_FLEXIBLE:
-        return "flexible";
-    case MT_MODE_RIGID_BODY:
-        return "rigid_body";
-    case MT_MODE_UNDECIDED:
-        return "undecided";
-    case MT_MODE_UNSTABLE:
-        break;
-    }
-    return "unstable";
-}
+static const char *const mode_kinds[] = {[MT_MODE_FLEXIBLE] = "flexible",
+                                         [MT_MODE_RIGID_BODY] = "rigid_body",
+                                         [MT_MODE_UNSTABLE] = "unstable",
+                                         [MT_MODE_UNDECIDED] = "undecided"};
 
 /* The number of positions to show for `count` requested vibration modes (0: all), including
  * rigid-body and unstable ones. */
@@ -66,22 +56,11 @@ static int modes_shown(const mt_modes *modes, int count)
 
 enum { DIGITS = 6, RATIO_DIGITS = 2 };
 
-static const char *kind_name(mt_damped_kind kind)
-{
-    switch (kind) {
-    case MT_DAMPED_OSCILLATING:
-        return "oscillating";
-    case MT_DAMPED_OVERDAMPED:
-        return "overdamped";
-    case MT_DAMPED_RIGID_BODY:
-        return "rigid_body";
-    case MT_DAMPED_UNDECIDED:
-        return "undecided";
-    case MT_DAMPED_UNSTABLE:
-        break;
-    }
-    return "unstable";
-}
+static const char *const damped_kinds[] = {[MT_DAMPED_OSCILLATING] = "oscillating",
+                                           [MT_DAMPED_OVERDAMPED] = "overdamped",
+                                           [MT_DAMPED_RIGID_BODY] = "rigid_body",
+                                           [MT_DAMPED_UNSTABLE] = "unstable",
+                                           [MT_DAMPED_UNDECIDED] = "undecided"};
 
 /* 1-based number of an oscillating mode; 0 for the others, and where one is undecided. */
 static int index_of(const mt_damped_modes *d, int i)
@@ -126,9 +105,8 @@ typedef struct damped_row {
 static const mt_field damped_fields[] = {
     MT_F_COUNT_OR_NULL("index", index, 1,
                        "Number among the oscillating modes, from 1; null: none."),
-    MT_F_TEXT(
-        "kind", kind,
-        "\"oscillating\", \"overdamped\", \"rigid_body\", \"unstable\" or \"undecided\"."),
+    MT_F_CHOICE("kind", kind, damped_kinds,
+                "What it is; of an undecided one rounding hides whether it is stable."),
     MT_F_NUMBER_OR_NULL("natural_frequency_hz", natural_hz,
                         "Natural frequency: the size of the pole."),
     MT_F_NUMBER_OR_NULL("natural_frequency_error_hz", natural_error_hz,
@@ -140,7 +118,8 @@ static const mt_field damped_fields[] = {
     MT_F_NUMBER_OR_NULL("decay_per_s", decay_per_s, "Rate at which it decays."),
     MT_F_NUMBER("residual", residual, "Residual relative to rounding."),
 };
-static const mt_record damped_record = MT_F_RECORD_OF(damped_fields, NULL, NULL);
+static const mt_record damped_record = MT_F_RECORD_OF(
+    damped_fields, "damped_mode", "A mode with damping, a root of the equations of motion.");
 static const mt_record_column damped_columns[] = {
     MT_R_COLUMN(index, "damped mode", 0, MT_IN_TABLES),
     MT_R_COLUMN(kind, "kind", 0, MT_IN_TABLES),
@@ -159,7 +138,7 @@ static damped_row damped_row_of(const mt_damped_modes *d, int i, bool for_people
     const bool rigid = d->kind[i] == MT_DAMPED_RIGID_BODY;
     return (damped_row){
         .index = index_of(d, i),
-        .kind = for_people && rigid ? "rigid body" : kind_name(d->kind[i]),
+        .kind = for_people && rigid ? "rigid body" : damped_kinds[d->kind[i]],
         .natural_hz = decided_value(d, i, mt_damped_natural_hz(d, i)),
         .natural_error_hz = nan(""),
         .damped_hz = decided_value(d, i, damped_hz(d, i)),
@@ -204,21 +183,21 @@ static void damped_csv(const mt_damped_modes *d, int count, const char *configur
     }
 }
 
-/* Member "damped_modes"; error: of |s| as a part of it, or NULL. */
-static void damped_json(const mt_damped_modes *d, const double *error, int count,
-                        mt_json_writer *w)
+/* All rows, *n of them in mem; error: of |s| as a part of it, or NULL. */
+static damped_row *damped_rows_of(const mt_damped_modes *d, const double *error, int count,
+                                  mt_arena *mem, int *n)
 {
-    mt_json_open(w, "damped_modes", '[');
-    for (int i = 0; i < d->count; i++) {
-        damped_row row = damped_row_of(d, i, false);
-        row.natural_error_hz = error == NULL ? nan("") : error[i] * mt_damped_natural_hz(d, i);
+    damped_row *const out = mt_arena_alloc(mem, (size_t)d->count, sizeof *out);
+    *n = 0;
+    for (int i = 0; i < d->count && out != NULL; i++) {
         if (is_within_count(d, i, count)) {
-            mt_json_open(w, NULL, '{');
-            mt_record_put(w, &damped_record, &row);
-            mt_json_close(w);
+            out[*n] = damped_row_of(d, i, false);
+            out[*n].natural_error_hz =
+                error == NULL ? nan("") : error[i] * mt_damped_natural_hz(d, i);
+            (*n)++;
         }
     }
-    mt_json_close(w);
+    return out;
 }
 
 /* Shapes. */
@@ -392,6 +371,7 @@ typedef struct view {
     const mt_damped_modes *damped;
     mt_lowest_damped few; /* of a large mechanism: `damped` is of these */
     mt_warning_list warning_list;
+    mt_arena *mem;
 } view;
 
 /* A mode. */
@@ -406,6 +386,8 @@ typedef struct mode_row {
     int repeated;
     double residual;
     double orthogonality;
+    bool with_shape;
+    double *shape; /* by channel */
 } mode_row;
 
 /* Among columns for people: where an error is large enough to be shown. */
@@ -416,16 +398,24 @@ static const mt_field mode_fields[] = {
     MT_F_COUNT_OR_NULL("index", index, 1,
                        "Number among the vibration modes, from 1; null: none."),
     MT_F_TEXT_OR_NULL("name", name, "Name that the model gives it."),
-    MT_F_NUMBER("frequency_hz", hz, "Natural frequency."),
-    MT_F_NUMBER("frequency_error_hz", error_hz, "Bound of its error."),
-    MT_F_TEXT("kind", kind, "\"flexible\", \"rigid_body\", \"unstable\" or \"undecided\"."),
+    MT_F_NUMBER_OR_NULL("frequency_hz", hz,
+                        "Natural frequency; null: unstable or undecided, it has none."),
+    MT_F_NUMBER_OR_NULL("frequency_error_hz", error_hz,
+                        "Bound of its error; null: it has no frequency."),
+    MT_F_CHOICE("kind", kind, mode_kinds,
+                "What it is; of an undecided one rounding hides whether it is stable."),
     MT_F_NUMBER("omega_squared", omega_squared, "Eigenvalue [rad^2/s^2]."),
     MT_F_NUMBER("omega_squared_error", omega_squared_error, "Bound of its error [rad^2/s^2]."),
     MT_F_COUNT("repeated", repeated, 1, "How many modes share its frequency."),
     MT_F_NUMBER("residual", residual, "Residual relative to rounding."),
     MT_F_NUMBER("orthogonality", orthogonality, "Loss of orthogonality relative to rounding."),
+    MT_F_NUMBERS_BY_VARIABLE(
+        "shape", shape,
+        "With --shapes: the mass-normalised shape at the sensors, or without sensors the "
+        "motions of the bodies, by name [1/sqrt(kg) and rad/(m sqrt(kg))].",
+        MT_F_WHEN(with_shape)),
 };
-static const mt_record mode_record = MT_F_RECORD_OF(mode_fields, NULL, NULL);
+static const mt_record mode_record = MT_F_RECORD_OF(mode_fields, "mode", "A mode.");
 static const mt_record_column mode_columns[] = {
     MT_R_COLUMN(index, "mode", 0, MT_IN_TABLES),
     MT_R_COLUMN(kind, "kind", 0, MT_IN_TABLES),
@@ -468,29 +458,15 @@ static mode_row mode_row_of(const view *v, int i, bool for_people)
         .hz = mt_modal_hz(m, i),
         .error_hz = for_people && !is_rough(m, i) ? nan("") : mt_modal_error_hz(m, i),
         .kind = for_people && m->kind[i] == MT_MODE_RIGID_BODY ? "rigid body"
-                                                               : mode_kind_name(m->kind[i]),
+                                                               : mode_kinds[m->kind[i]],
         .omega_squared = m->lambda[i],
         .omega_squared_error = m->error[i],
         .repeated = size,
         .residual = m->residual[i],
         .orthogonality = m->orthogonality[i],
+        .with_shape = v->shapes.n > 0,
+        .shape = v->shapes.n > 0 ? v->shapes.value + ((ptrdiff_t)i * v->shapes.n) : NULL,
     };
-}
-
-static void json_mode(mt_json_writer *w, const view *v, int i)
-{
-    const mode_row row = mode_row_of(v, i, false);
-    mt_json_open(w, NULL, '{');
-    mt_record_put(w, &mode_record, &row);
-    if (v->shapes.n > 0) {
-        mt_json_open(w, "shape", '{');
-        for (int k = 0; k < v->shapes.n; k++) {
-            mt_json_put_number(w, v->shapes.name[k],
-                               v->shapes.value[k + ((ptrdiff_t)i * v->shapes.n)]);
-        }
-        mt_json_close(w);
-    }
-    mt_json_close(w);
 }
 
 /* Below this frequency no mode is missing. */
@@ -516,62 +492,152 @@ static const mt_state *position_of(const view *v)
     return v->l != NULL ? mt_lowest_settled(v->l) : NULL;
 }
 
-static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
+/* The equilibrium at which the equations are linearised. */
+typedef struct equilibrium_row {
+    bool solved;
+    int iterations;
+    double residual;
+    double gap_m;
+    double largest_motion_m;
+    double largest_turn_rad;
+} equilibrium_row;
+
+#define THIS equilibrium_row
+static const mt_field equilibrium_fields[] = {
+    MT_F_FLAG("solved", solved, "Loads act, and their equilibrium was found."),
+    MT_F_COUNT("iterations", iterations, 0, "Iterations that it took."),
+    MT_F_NUMBER("residual", residual, "Part of the forces at work that is left."),
+    MT_F_NUMBER("gap_m", gap_m, "Largest violation of a joint."),
+    MT_F_NUMBER("largest_motion_m", largest_motion_m,
+                "Largest displacement of a mass centre from the reference position."),
+    MT_F_NUMBER("largest_turn_rad", largest_turn_rad,
+                "Largest rotation of a body from the reference position."),
+};
+static const mt_record equilibrium_record =
+    MT_F_RECORD_OF(equilibrium_fields, NULL, "The equilibrium.");
+#undef THIS
+
+/* One configuration, answered. */
+typedef struct configuration_row {
+    const char *configuration;
+    mt_warning *warnings;
+    int n_warnings;
+    mt_warning *notes;
+    int n_notes;
+    mt_lowest_method method;
+    double complete_below_hz;
+    int freedoms;
+    int vibration_modes; /* -1: not known */
+    int rigid_body_modes;
+    int unstable_modes;
+    int undecided_modes;
+    int massless_directions; /* -1: not known */
+    mode_row *modes;
+    int n_modes;
+    bool with_damping;
+    damped_row *damped;
+    int n_damped;
+    mt_joints_row *redundant; /* NULL: not looked for */
+    int n_redundant;
+    equilibrium_row equilibrium;
+} configuration_row;
+
+#define THIS configuration_row
+static const mt_field configuration_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Its name."),
+    MT_F_LIST("doubts", warnings, n_warnings, mt_warning, mt_warning_record,
+              "What is suspicious in the model."),
+    MT_F_LIST("facts", notes, n_notes, mt_warning, mt_warning_record,
+              "What the model leaves open, or simplifies."),
+    MT_F_ENUM("method", method, mt_lowest_method, mt_cli_methods,
+              "\"dense\": all modes were found; \"tree\", \"sparse\": the lowest ones of a "
+              "large mechanism."),
+    MT_F_NUMBER_OR_NULL("complete_below_hz", complete_below_hz,
+                        "Below this frequency no mode is missing; null: none is missing at "
+                        "all."),
+    MT_F_COUNT("freedoms", freedoms, 0, "Number of degrees of freedom."),
+    MT_F_COUNT_OR_NULL("vibration_modes", vibration_modes, 0,
+                       "Number of vibration modes; null: not counted, of the lowest ones "
+                       "only."),
+    MT_F_COUNT("rigid_body_modes", rigid_body_modes, 0, "Number of modes of frequency 0."),
+    MT_F_COUNT("unstable_modes", unstable_modes, 0, "Number of modes that grow."),
+    MT_F_COUNT("undecided_modes", undecided_modes, 0,
+               "Number of modes of which rounding hides whether they are stable."),
+    MT_F_COUNT_OR_NULL("massless_directions", massless_directions, 0,
+                       "Number of directions without mass, which follow statically; null: not "
+                       "counted, of the lowest ones only."),
+    MT_F_LIST("modes", modes, n_modes, mode_row, mode_record,
+              "The modes, lowest first: as many vibrations as --count says."),
+    MT_F_LIST("damped_modes", damped, n_damped, damped_row, damped_record,
+              "With --damped: the modes with damping.", MT_F_WHEN(with_damping)),
+    MT_F_LIST_OR_NULL("redundant_constraints", redundant, n_redundant, mt_joints_row,
+                      mt_joints_record,
+                      "Sets of joints whose equations depend on each other; null: there are "
+                      "some, which were not looked for."),
+    MT_F_RECORD("equilibrium", equilibrium, equilibrium_row, equilibrium_record,
+                "Where the modes are: at rest under the loads."),
+};
+static const mt_record configuration_record =
+    MT_F_RECORD_OF(configuration_fields, "configuration", "A configuration, answered.");
+#undef THIS
+
+static equilibrium_row equilibrium_row_of(const view *v)
 {
     /* what is answered without an analysis is at rest as drawn */
     const mt_state drawn = {.equilibrium.active = v->l != NULL && v->l->sys->loaded};
+    const mt_state *const settled = position_of(v);
+    const mt_state *const at = settled == NULL ? &drawn : settled;
+    return (equilibrium_row){
+        .solved = at->equilibrium.active,
+        .iterations = at->iterations,
+        .residual = at->equilibrium.residual,
+        .gap_m = at->gap_m,
+        .largest_motion_m = at->moved_m,
+        .largest_turn_rad = at->turned_rad,
+    };
+}
+
+static mt_status configuration_row_of(const view *v, configuration_row *out, mt_err *err)
+{
     const mt_modes *const m = v->m;
-    const mt_state *const at = position_of(v) == NULL ? &drawn : position_of(v);
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
-    mt_json_put_warnings(w, "doubts", &v->warning_list, MT_LEVEL_WARNING);
-    mt_json_put_warnings(w, "facts", &v->warning_list, MT_LEVEL_NOTE);
-    mt_json_put_string(w, "method", mt_cli_method(v->l == NULL ? MT_LOWEST_NONE : v->l->way));
-    if (v->l == NULL) {
-        mt_json_put_null(w, "complete_below_hz"); /* no mode is missing */
-    } else {
-        mt_json_put_number(w, "complete_below_hz", complete_below_hz(v->l));
+    *out = (configuration_row){
+        .configuration = mt_loaded_model_configuration(v->s, v->c),
+        .method = v->l == NULL ? MT_LOWEST_NONE : v->l->way,
+        .complete_below_hz = v->l == NULL ? nan("") : complete_below_hz(v->l),
+        .freedoms = m->n,
+        /* of the lowest ones these take the directions without mass, which are not sought */
+        .vibration_modes = v->l == NULL ? mt_modal_vibrations(m) : -1,
+        .rigid_body_modes = m->n_rigid,
+        .unstable_modes = m->n_unstable,
+        .undecided_modes = m->n_undecided,
+        .massless_directions = v->l == NULL ? m->n_condensed : -1,
+        .n_modes = v->shown,
+        .with_damping = v->with_damping,
+        .equilibrium = equilibrium_row_of(v),
+    };
+    const mt_warning_list *const list = &v->warning_list;
+    out->warnings = mt_warning_pick(list, MT_LEVEL_WARNING, v->mem, &out->n_warnings);
+    out->notes = mt_warning_pick(list, MT_LEVEL_NOTE, v->mem, &out->n_notes);
+    out->modes = mt_arena_alloc(v->mem, (size_t)v->shown, sizeof *out->modes);
+    for (int i = 0; i < v->shown && out->modes != NULL; i++) {
+        out->modes[i] = mode_row_of(v, i, false);
     }
-    mt_json_put_integer(w, "freedoms", m->n);
-    if (v->l == NULL) {
-        mt_json_put_integer(w, "vibration_modes", mt_modal_vibrations(m));
-    } else {
-        mt_json_put_null(w, "vibration_modes"); /* that takes the directions without mass */
-    }
-    mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
-    mt_json_put_integer(w, "unstable_modes", m->n_unstable);
-    mt_json_put_integer(w, "undecided_modes", m->n_undecided);
-    if (v->l == NULL) {
-        mt_json_put_integer(w, "massless_directions", m->n_condensed);
-    } else {
-        /* the lowest modes are found without them */
-        mt_json_put_null(w, "massless_directions");
-    }
-    mt_json_open(w, "modes", '[');
-    for (int i = 0; i < v->shown; i++) {
-        json_mode(w, v, i);
-    }
-    mt_json_close(w);
     if (v->with_damping) {
-        damped_json(v->damped, v->few.error, v->count, w);
+        out->damped = damped_rows_of(v->damped, v->few.error, v->count, v->mem, &out->n_damped);
     }
     if (v->a != NULL) {
-        MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
-    } else if (n_redundant(v->l) > 0) { /* some there are; which, is not looked for */
-        mt_json_put_null(w, "redundant_constraints");
-    } else {
-        mt_json_open(w, "redundant_constraints", '[');
-        mt_json_close(w);
+        MT_TRY(mt_cli_redundant(v->a->lin, v->mem, &out->n_redundant, &out->redundant, err));
+    } else if (n_redundant(v->l) == 0) { /* else there are some; which, is not looked for */
+        out->redundant = mt_arena_alloc(v->mem, 1, sizeof *out->redundant);
     }
-    mt_json_open(w, "equilibrium", '{');
-    mt_json_put_bool(w, "solved", at->equilibrium.active);
-    mt_json_put_integer(w, "iterations", at->iterations);
-    mt_json_put_number(w, "residual", at->equilibrium.residual);
-    mt_json_put_number(w, "gap_m", at->gap_m);
-    mt_json_put_number(w, "largest_motion_m", at->moved_m);
-    mt_json_put_number(w, "largest_turn_rad", at->turned_rad);
-    mt_json_close(w);
-    mt_json_close(w);
+    return mt_arena_check(v->mem, err);
+}
+
+static mt_status write_modes_json(mt_json_writer *w, const view *v, mt_err *err)
+{
+    configuration_row row;
+    MT_TRY(configuration_row_of(v, &row, err));
+    mt_record_put_object(w, NULL, &configuration_record, &row, v->shapes.n, v->shapes.name);
     return MT_OK;
 }
 
@@ -824,6 +890,7 @@ static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, in
               .asked = asked,
               .with_damping = to->args->given[MT_OPT_DAMPED]};
     mt_arena mem = {.first = NULL};
+    v.mem = &mem;
     mt_status rc = mt_arena_init(&mem, 0, err);
     v.warning_list = mt_warning_list_default(&mem);
     to->run.progress = mt_watch_begin(to->args, 0, "modes");
@@ -846,7 +913,7 @@ static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, in
     }
     switch (to->args->format) {
     case MT_FORMAT_JSON:
-        rc = json_view(to->w, &v, err);
+        rc = write_modes_json(to->w, &v, err);
         break;
     case MT_FORMAT_CSV:
         rc = csv_view(to, &v);
@@ -883,10 +950,7 @@ static int each(sink *to, const mt_loaded_model *s)
         }
         code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         if (to->w != NULL) {
-            mt_json_open(to->w, NULL, '{');
-            mt_json_put_string(to->w, "configuration", mt_loaded_model_configuration(s, c));
-            mt_json_put_string(to->w, "error", err.text);
-            mt_json_close(to->w);
+            mt_cli_json_failed(to->w, mt_loaded_model_configuration(s, c), &err);
         }
     }
     return code;
@@ -940,6 +1004,7 @@ const mt_command mt_command_modes = {
         "of the frequency) and its residual and orthogonality relative to rounding (about 1 is "
         "perfect). Redundant joints and the way to the equilibrium are listed. Shapes are "
         "mass-normalised. Names of modes are shown if --set changes nothing.",
+    .answer = {&configuration_record, MT_ANSWER_CONFIGURATIONS},
     .run = run_modes,
 };
 

@@ -306,7 +306,7 @@ static void write_sensitivity_json(mt_json_writer *w, const sensitivity_table *v
 {
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
-    mt_json_put_string(w, "method", mt_cli_method(v->way));
+    mt_json_put_string(w, "method", mt_cli_methods[v->way]);
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->modes; i++) {
         mt_json_open(w, NULL, '{');

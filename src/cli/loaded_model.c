@@ -11,6 +11,7 @@
 #include "model/model.h"
 #include "model/values.h"
 #include "result/folder.h"
+#include "result/write.h"
 
 static mt_status refuse_unknown_name(const char *what, const char *name,
                                      const char *const *names, int n, mt_err *err)
@@ -295,21 +296,59 @@ const char *mt_mode_name(const mt_loaded_model *s, int c, int index)
     return NULL;
 }
 
-const char *mt_cli_method(mt_lowest_method way)
-{
-    static const char *const names[] = {
-        [MT_LOWEST_NONE] = "dense", [MT_LOWEST_TREE] = "tree", [MT_LOWEST_SPARSE] = "sparse"};
-    return names[way];
-}
+const char *const mt_cli_methods[MT_CLI_METHODS] = {
+    [MT_LOWEST_NONE] = "dense", [MT_LOWEST_TREE] = "tree", [MT_LOWEST_SPARSE] = "sparse"};
 
 /* What answers about configurations share. */
 
+typedef struct failed_row {
+    const char *configuration;
+    const char *error;
+} failed_row;
+
+#define THIS failed_row
+static const mt_field failed_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Its name."),
+    MT_F_TEXT("error", error, "Why there is no answer."),
+};
+const mt_record mt_failed_record =
+    MT_F_RECORD_OF(failed_fields, "failed", "A configuration without an answer.");
+#undef THIS
+
 void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err)
 {
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", configuration);
-    mt_json_put_string(w, "error", err->text);
-    mt_json_close(w);
+    const failed_row row = {configuration, err->text};
+    mt_record_put_object(w, NULL, &mt_failed_record, &row, 0, NULL);
+}
+
+#define THIS mt_joints_row
+static const mt_field joints_fields[] = {
+    MT_F_TEXTS(NULL, name, n, "Names of joints.", .flat = true),
+};
+const mt_record mt_joints_record = MT_F_BARE_RECORD_OF(joints_fields);
+#undef THIS
+
+static mt_joints_row joints_row_of(const mt_joint_names *joints, mt_arena *mem)
+{
+    mt_joints_row row = {.name = mt_arena_alloc(mem, (size_t)joints->n, sizeof *row.name)};
+    for (; row.name != NULL && row.n < joints->n; row.n++) {
+        row.name[row.n] = joints->name[row.n];
+    }
+    return row;
+}
+
+mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
+                           mt_err *err)
+{
+    const int count = mt_linear_redundant(lin);
+    *out = mt_arena_alloc(mem, (size_t)count + 1, sizeof **out); /* a list of none is one */
+    MT_TRY(mt_arena_check(mem, err));
+    for (*n = 0; *n < count; (*n)++) {
+        mt_joint_names joints;
+        MT_TRY(mt_linear_redundant_set(lin, *n, mem, &joints, err));
+        (*out)[*n] = joints_row_of(&joints, mem);
+    }
+    return mt_arena_check(mem, err);
 }
 
 void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
@@ -341,18 +380,6 @@ void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness)
     mt_json_put_number(w, "independence", nearness->independence);
     mt_cli_json_joints(w, "joints", &nearness->joints);
     mt_json_close(w);
-}
-
-mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err)
-{
-    mt_json_open(w, "redundant_constraints", '[');
-    for (int k = 0; k < mt_linear_redundant(lin); k++) {
-        mt_joint_names joints;
-        MT_TRY(mt_linear_redundant_set(lin, k, mem, &joints, err));
-        mt_cli_json_joints(w, NULL, &joints);
-    }
-    mt_json_close(w);
-    return MT_OK;
 }
 
 /* --model takes a file as it is, with a warning where it is not what was solved; without it the

@@ -61,8 +61,9 @@ mt_status mt_loaded_model_analyse(const mt_loaded_model *s, int c, int first, mt
 mt_status mt_loaded_model_lowest(const mt_loaded_model *s, int c, int n_inputs,
                                  const int *inputs, const double *at, mt_lowest_want want,
                                  mt_lowest **out, mt_err *err);
-/* "dense", "tree", "sparse": the name of the method in JSON. */
-const char *mt_cli_method(mt_lowest_method way);
+/* Names of the methods in JSON: "dense", "tree", "sparse". */
+enum { MT_CLI_METHODS = MT_LOWEST_SPARSE + 1 };
+extern const char *const mt_cli_methods[MT_CLI_METHODS];
 /* The definition of configuration c with these inputs, in the run of the model. */
 mt_system_def mt_loaded_model_system(const mt_loaded_model *s, int c, int n_inputs,
                                      const int *inputs, const double *at);
@@ -85,14 +86,22 @@ const char *mt_loaded_model_configuration(const mt_loaded_model *s, int c);
  * original design only. */
 const char *mt_mode_name(const mt_loaded_model *s, int c, int index);
 
-/* A configuration without an answer in a list of answers, with the reason. */
+/* A configuration without an answer in a list of answers, with the reason: mt_failed_record. */
+extern const mt_record mt_failed_record;
 void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err);
 /* Warnings and notes of a configuration, one line each, before its table. */
 void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out);
-/* mt_cli_json_joints: names of joints as a list; mt_cli_json_redundant: member
- * "redundant_constraints", a list of such lists. */
+/* Names of joints as a list, for lists of such lists. */
+typedef struct mt_joints_row {
+    const char **name;
+    int n;
+} mt_joints_row;
+extern const mt_record mt_joints_record;
+/* Sets of joints whose equations depend on each other: *n of them, *out not NULL, in mem. */
+mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
+                           mt_err *err);
+/* Names of joints as a list. */
 void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints);
-mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err);
 /* Member "dead_centre" of an open object: null, or the distance to one and the joints whose
  * equations become dependent there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);

@@ -133,6 +133,27 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
     return code;
 }
 
+/* The file of that name, NULL: there is none. known, text: names that there are, *n of them. */
+static const mt_shipped *find_shipped(const mt_shipped_kind *kind, const char *name,
+                                      const char *known[SHIPPED_MOST],
+                                      char text[SHIPPED_MOST][SHIPPED_NAME], int *n)
+{
+    int count = 0;
+    const mt_shipped *const files = mt_shipped_all(&count);
+    *n = 0;
+    for (int i = 0; i < count && *n < SHIPPED_MOST; i++) {
+        if (!shipped_file_name(kind, &files[i], text[*n], SHIPPED_NAME)) {
+            continue;
+        }
+        if (strcmp(text[*n], name) == 0) {
+            return &files[i];
+        }
+        known[*n] = text[*n];
+        (*n)++;
+    }
+    return NULL;
+}
+
 /* The file of that name. Fails: MT_E_USAGE, with the nearest name or the command that lists
  * all. */
 static mt_status shipped_named(const mt_shipped_kind *kind, const char *name,
@@ -140,19 +161,15 @@ static mt_status shipped_named(const mt_shipped_kind *kind, const char *name,
 {
     const char *known[SHIPPED_MOST];
     char text[SHIPPED_MOST][SHIPPED_NAME];
+    char of_command[SHIPPED_NAME];
     int n = 0;
-    int count = 0;
-    const mt_shipped *const files = mt_shipped_all(&count);
-    for (int i = 0; i < count && n < SHIPPED_MOST; i++) {
-        if (!shipped_file_name(kind, &files[i], text[n], SHIPPED_NAME)) {
-            continue;
-        }
-        if (strcmp(text[n], name) == 0) {
-            *out = &files[i];
-            return MT_OK;
-        }
-        known[n] = text[n];
-        n++;
+    *out = find_shipped(kind, name, known, text, &n);
+    if (*out == NULL && kind == &mt_shipped_schemas) {
+        (void)mt_snprintf(of_command, sizeof of_command, "command_%s", name);
+        *out = find_shipped(kind, of_command, known, text, &n);
+    }
+    if (*out != NULL) {
+        return MT_OK;
     }
     const char *const near = mt_text_nearest(name, known, n);
     return near == NULL
@@ -400,8 +417,11 @@ const mt_command mt_command_schema = {
     .operands = "[NAME]",
     .least = 0,
     .most = 1,
-    .summary = "the JSON Schemas of all files",
+    .summary = "the JSON Schemas of all files, and of what commands print",
     .details =
-        "Lists the schemas. With a name (model, study, result, ...): prints that schema.",
+        "Lists the schemas. With a name: prints that schema, of a kind of file (model, study, "
+        "aircraft, profile, result, index, progress, scene), or of what a command prints as "
+        "JSON: command_modes, or the command's name alone where no kind of file has it "
+        "(modes).",
     .run = run_schema,
 };

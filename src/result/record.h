@@ -32,9 +32,10 @@ typedef enum mt_field_type {
     MT_FIELD_OPTION, /* a pointer to a struct; null is NULL */
     /* a pointer to structs; of this and the next two, the int count is at `other` */
     MT_FIELD_LIST,
-    MT_FIELD_TEXTS,       /* const char ** */
-    MT_FIELD_NUMBERS,     /* double *; in one line */
-    MT_FIELD_BY_VARIABLE, /* double *, one for each variable of the study, by its name */
+    MT_FIELD_TEXTS,   /* const char ** */
+    MT_FIELD_NUMBERS, /* double *; in one line */
+    /* double *, one for each variable of the study, or channel of a shape, by its name */
+    MT_FIELD_BY_VARIABLE,
     MT_FIELD_TYPE_COUNT
 } mt_field_type;
 
@@ -55,7 +56,8 @@ typedef struct mt_field {
     /* Keywords of the schema besides those of the type, which the reader does not check here;
      * of a list of numbers they are its items'. NULL: none */
     const char *rules;
-    bool flat;             /* of a record: in one line */
+    /* In one line: a record, each of a list of records, a list of texts. */
+    bool flat;
     bool nullable;         /* of a list: NULL is null, else NULL is empty */
     bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
     /* Files that older programs wrote may lack it. It is read as mt_record_clear leaves it; of
@@ -65,6 +67,10 @@ typedef struct mt_field {
     /* Of a text: older programs wrote it in place of the record that holds it, whose other
      * members are `later` all. */
     bool alone;
+    /* Of what is written and never read (answers of commands): it is there only where the bool
+     * at `when` is true. */
+    bool optional;
+    size_t when;
 } mt_field;
 
 struct mt_record {
@@ -73,18 +79,20 @@ struct mt_record {
     const mt_field *fields; /* in the order in which they are written */
     const char *name; /* of its definition in the schema; NULL: it stands where it is used */
     const char *says; /* the sentence of the schema; NULL: its one member says it */
+    bool bare;        /* written as the value of its one member: lists of lists */
 };
 
 /*
  * Macros that write the tables, with THIS for the struct. The compiler checks every member's
  * type: MT_F_MEMBER is the member's offset times 1 where its type is `of`, and does not compile
- * otherwise. The sentence comes last; behind it `.rules` may be given.
+ * otherwise. The sentence comes last; behind it `.rules` may be given, or MT_F_WHEN.
  */
 /* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
 #define MT_F_MEMBER(of, m) (offsetof(THIS, m) * _Generic(&((THIS *)NULL)->m, of * : 1U))
 #define MT_F_FIELD(json, kind, or_null, of, m) \
     .name = (json), .type = (kind), .nullable = (or_null), .offset = MT_F_MEMBER(of, m)
 #define MT_F_ONE_OF(list) .choices = (list), .n_choices = MT_COUNT(list)
+#define MT_F_WHEN(m)      .optional = true, .when = MT_F_MEMBER(bool, m)
 
 #define MT_F_FORMAT(json, value, ...)                                                   \
     {                                                                                   \
@@ -208,9 +216,13 @@ struct mt_record {
     {                                                          \
         MT_F_FIELD(NULL, MT_FIELD_TEXT, true, const char *, m) \
     }
-#define MT_F_RECORD_OF(fields, name, says)                       \
-    {                                                            \
-        sizeof(THIS), MT_COUNT(fields), (fields), (name), (says) \
+#define MT_F_RECORD_OF(fields, name, says)                              \
+    {                                                                   \
+        sizeof(THIS), MT_COUNT(fields), (fields), (name), (says), false \
+    }
+#define MT_F_BARE_RECORD_OF(fields)                                \
+    {                                                              \
+        sizeof(THIS), MT_COUNT(fields), (fields), NULL, NULL, true \
     }
 /* NOLINTEND(bugprone-macro-parentheses) */
 

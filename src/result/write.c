@@ -13,7 +13,7 @@ typedef struct names {
     const char *const *items;
 } names;
 
-static void put_record(mt_json_writer *w, const char *name, const mt_record *record,
+static void put_record(mt_json_writer *w, const char *name, const mt_record *record, bool flat,
                        const void *item, const names *variables);
 static void put_members(mt_json_writer *w, const char *name, const mt_record *record,
                         const void *item, const names *variables);
@@ -27,15 +27,19 @@ static void put_list(mt_json_writer *w, const mt_field *f, const void *items, in
     }
     mt_json_open(w, f->name, '[');
     for (int i = 0; i < n; i++) {
-        put_record(w, NULL, f->record, (const char *)items + ((size_t)i * f->record->size),
-                   variables);
+        put_record(w, NULL, f->record, f->flat,
+                   (const char *)items + ((size_t)i * f->record->size), variables);
     }
     mt_json_close(w);
 }
 
-static void put_texts(mt_json_writer *w, const char *name, const char *const *items, int n)
+static void put_texts(mt_json_writer *w, const mt_field *f, const char *const *items, int n)
 {
-    mt_json_open(w, name, '[');
+    if (f->flat) {
+        mt_json_open_flat(w, f->name, '[');
+    } else {
+        mt_json_open(w, f->name, '[');
+    }
     for (int i = 0; i < n; i++) {
         mt_json_put_string(w, NULL, items[i]);
     }
@@ -121,22 +125,16 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         mt_json_put_bool(w, f->name, *(const bool *)at);
         break;
     case MT_FIELD_RECORD:
-        if (f->flat) {
-            mt_json_open_flat(w, f->name, '{');
-            put_members(w, NULL, f->record, at, variables);
-            mt_json_close(w);
-            break;
-        }
-        put_record(w, f->name, f->record, at, variables);
+        put_record(w, f->name, f->record, f->flat, at, variables);
         break;
     case MT_FIELD_OPTION:
-        put_record(w, f->name, f->record, mt_record_get_pointer(at), variables);
+        put_record(w, f->name, f->record, f->flat, mt_record_get_pointer(at), variables);
         break;
     case MT_FIELD_LIST:
         put_list(w, f, mt_record_get_pointer(at), *(const int *)other, variables);
         break;
     case MT_FIELD_TEXTS:
-        put_texts(w, f->name, mt_record_get_pointer(at), *(const int *)other);
+        put_texts(w, f, mt_record_get_pointer(at), *(const int *)other);
         break;
     case MT_FIELD_NUMBERS:
         put_numbers(w, f, mt_record_get_pointer(at), *(const int *)other);
@@ -155,20 +153,31 @@ static void put_members(mt_json_writer *w, const char *name, const mt_record *re
 {
     for (int i = 0; i < record->n; i++) {
         const mt_field *const f = &record->fields[i];
-        if (f->name != NULL && (name == NULL || strcmp(f->name, name) == 0)) {
+        const bool there = !f->optional || *(const bool *)((const char *)item + f->when);
+        if (there && f->name != NULL && (name == NULL || strcmp(f->name, name) == 0)) {
             put_field(w, f, item, variables);
         }
     }
 }
 
-static void put_record(mt_json_writer *w, const char *name, const mt_record *record,
+static void put_record(mt_json_writer *w, const char *name, const mt_record *record, bool flat,
                        const void *item, const names *variables)
 {
     if (item == NULL) {
         mt_json_put_null(w, name);
         return;
     }
-    mt_json_open(w, name, '{');
+    if (record->bare) {
+        mt_field value = record->fields[0];
+        value.name = name;
+        put_field(w, &value, item, variables);
+        return;
+    }
+    if (flat) {
+        mt_json_open_flat(w, name, '{');
+    } else {
+        mt_json_open(w, name, '{');
+    }
     put_members(w, NULL, record, item, variables);
     mt_json_close(w);
 }
@@ -178,13 +187,20 @@ void mt_record_put(mt_json_writer *w, const mt_record *record, const void *item)
     put_members(w, NULL, record, item, NULL);
 }
 
+void mt_record_put_object(mt_json_writer *w, const char *name, const mt_record *record,
+                          const void *item, int n, const char *const *of)
+{
+    const names variables = {n, of};
+    put_record(w, name, record, false, item, &variables);
+}
+
 void mt_json_put_warnings(mt_json_writer *w, const char *name, const mt_warning_list *list,
                           mt_warning_level level)
 {
     mt_json_open(w, name, '[');
     for (int i = 0; i < list->n; i++) {
         if (list->items[i].level == level) {
-            put_record(w, NULL, &mt_warning_record, &list->items[i], NULL);
+            put_record(w, NULL, &mt_warning_record, false, &list->items[i], NULL);
         }
     }
     mt_json_close(w);

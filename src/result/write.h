@@ -25,6 +25,9 @@ mt_status mt_result_write_after_page(const mt_result *result, const mt_text *pag
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
 /* Write all members of a record, of which none is by variables, into an open object. */
 void mt_record_put(mt_json_writer *w, const mt_record *record, const void *item);
+/* Write a whole struct as an object. of [n]: names of its numbers by variable. */
+void mt_record_put_object(mt_json_writer *w, const char *name, const mt_record *record,
+                          const void *item, int n, const char *const *of);
 /* Write the warnings of one level as a list of objects. */
 void mt_json_put_warnings(mt_json_writer *w, const char *name, const mt_warning_list *list,
                           mt_warning_level level);

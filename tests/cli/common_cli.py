@@ -10,6 +10,7 @@ import unittest
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from printed import faults  # noqa: E402
 from suite import PROGRAM, SOURCE  # noqa: E402, F401  for who imports them from here, too
 COMMANDS = ["run", "merge", "compare", "modes", "mac", "sweep", "simulate", "sensitivity", "response", "info", "show", "report", "explain", "apply", "diff", "check",
             "init", "examples", "schema", "profile", "help"]
@@ -77,8 +78,10 @@ class CliTest(unittest.TestCase):
     def run_program(self, *args, env=None, **more):
         """Run in the test's folder; strings come back."""
         environment = dict(os.environ, **(env or {}))
-        return subprocess.run([PROGRAM, *args], cwd=self.folder, env=environment, capture_output=True,
+        done = subprocess.run([PROGRAM, *args], cwd=self.folder, env=environment, capture_output=True,
                               encoding="utf-8", timeout=600, **more)
+        self.assertEqual(faults([str(arg) for arg in args], done.stdout), [], args)
+        return done
 
     def expect(self, code, *args, **more):
         done = self.run_program(*args, **more)

@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "cli/cli.h"
 #include "cli/cmd_run.h"
-#include "cli/terminal.h"
 #include "environment/aircraft.h"
 #include "environment/vibration.h"
 #include "io/file.h"
@@ -269,6 +269,7 @@ static void add_document(mt_test *t, mt_text *out, const document *d)
  * may lack the later ones. */
 
 static void add_record(mt_test *t, mt_text *out, const mt_record *record);
+static void add_field_type(mt_test *t, mt_text *out, const mt_field *f);
 
 /* "type": the type, or null. */
 static void add_type_or_null(mt_text *out, const char *type, bool nullable)
@@ -281,6 +282,13 @@ static void add_record_or_reference(mt_test *t, mt_text *out, const mt_record *r
 {
     if (record->name != NULL) {
         mt_text_addf(out, "\"$ref\": \"#/definitions/%s\"", record->name);
+        return;
+    }
+    if (record->bare) {
+        REQUIRE(t, record->n == 1);
+        add_text(out, "description", record->fields[0].says);
+        mt_text_add(out, ", ");
+        add_field_type(t, out, &record->fields[0]);
         return;
     }
     if (CHECK(t, record->says != NULL)) {
@@ -406,7 +414,8 @@ static void add_record(mt_test *t, mt_text *out, const mt_record *record)
     int n = 0;
     REQUIRE(t, record->n <= MT_MAX_KEYS);
     for (int i = 0; i < record->n; i++) {
-        if (record->fields[i].name != NULL && !record->fields[i].later) {
+        const mt_field *const f = &record->fields[i];
+        if (f->name != NULL && !f->later && !f->optional) {
             names[n++] = record->fields[i].name;
         }
     }
@@ -453,15 +462,10 @@ static void find_definitions(mt_test *t, const mt_record *record, definitions *f
     }
 }
 
-static void add_records(mt_test *t, mt_text *out, const char *room, const char *name,
-                        const mt_record *root)
+static void add_definitions(mt_test *t, mt_text *out, const definitions *found)
 {
-    definitions found = {.n = 0};
-    add_head(out, room, name);
-    add_record_or_reference(t, out, root);
-    find_definitions(t, root, &found);
-    for (int i = 0; i < found.n; i++) {
-        const mt_record *const r = found.items[i];
+    for (int i = 0; i < found->n; i++) {
+        const mt_record *const r = found->items[i];
         mt_text_addf(out, "%s\"%s\": {", i == 0 ? ", \"definitions\": {" : ", ", r->name);
         mt_test_row(t, "definition \"%s\"", r->name);
         if (CHECK(t, r->says != NULL)) {
@@ -469,9 +473,47 @@ static void add_records(mt_test *t, mt_text *out, const char *room, const char *
             mt_text_add(out, ", ");
         }
         add_record(t, out, r);
-        mt_text_add(out, i + 1 < found.n ? "}" : "}}");
+        mt_text_add(out, i + 1 < found->n ? "}" : "}}");
     }
     mt_text_add(out, "}");
+}
+
+static void add_records(mt_test *t, mt_text *out, const char *room, const char *name,
+                        const mt_record *root)
+{
+    definitions found = {.n = 0};
+    add_head(out, room, name);
+    add_record_or_reference(t, out, root);
+    find_definitions(t, root, &found);
+    add_definitions(t, out, &found);
+}
+
+/* What a command prints. Records of configurations are definitions. */
+static void add_answer(mt_test *t, mt_text *out, const mt_command *command)
+{
+    const mt_record *const record = command->answer.record;
+    definitions found = {.n = 0};
+    mt_test_row(t, "%s", command->name);
+    add_head(out, "cli", command->name);
+    switch (command->answer.form) {
+    case MT_ANSWER_ONE:
+        add_record_or_reference(t, out, record);
+        break;
+    case MT_ANSWER_CONFIGURATIONS:
+        REQUIRE(t, record->name != NULL);
+        found = (definitions){.n = 2, .items = {record, &mt_failed_record}};
+        mt_text_addf(out,
+                     "\"description\": \"What `modetune %s --format json` prints: a list of "
+                     "the configurations, or the one that -c names alone.\", "
+                     "\"anyOf\": [{\"type\": \"array\", \"items\": {\"anyOf\": "
+                     "[{\"$ref\": \"#/definitions/%s\"}, {\"$ref\": \"#/definitions/%s\"}]}}, "
+                     "{\"$ref\": \"#/definitions/%s\"}, {\"$ref\": \"#/definitions/%s\"}]",
+                     command->name, record->name, mt_failed_record.name, record->name,
+                     mt_failed_record.name);
+        break;
+    }
+    find_definitions(t, record, &found);
+    add_definitions(t, out, &found);
 }
 
 static void add_scene_table(mt_test *t, mt_text *out, const mt_scene_table *table,
@@ -643,6 +685,20 @@ static void schema__of_what_is_written_is_what_its_records_say(mt_test *t)
     }
 }
 
+static void schema__of_what_commands_print_is_what_their_records_say(mt_test *t)
+{
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text compact = {.s = NULL};
+        char name[64];
+        if (mt_commands[i]->answer.record != NULL) {
+            (void)snprintf(name, sizeof name, "command_%s", mt_commands[i]->name);
+            add_answer(t, &compact, mt_commands[i]);
+            check_schema(t, name, &compact);
+        }
+        mt_text_free(&compact);
+    }
+}
+
 static void schema__of_a_scene_is_what_its_tables_say(mt_test *t)
 {
     mt_text compact = {.s = NULL};
@@ -657,4 +713,5 @@ static void schema__of_a_scene_is_what_its_tables_say(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(schema__of_a_scene_is_what_its_tables_say),
              MT_TEST(schema__of_a_document_is_what_its_tables_say),
-             MT_TEST(schema__of_what_is_written_is_what_its_records_say))
+             MT_TEST(schema__of_what_is_written_is_what_its_records_say),
+             MT_TEST(schema__of_what_commands_print_is_what_their_records_say))

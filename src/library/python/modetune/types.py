@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Written from the schemas by the target schemas (schemas/python_types.py): do not edit.
-"""Types of what the files hold, for editors and checkers of types: Study, Model, Result, ...
+"""Types of what the files hold, and of what commands print as JSON (CommandModes, ...), for
+editors and checkers of types: Study, Model, Result, ...
 
     from modetune.types import Study
     study: Study = {"format": "modetune-study/1", "model": "stick.json", "goals": []}
@@ -12,6 +13,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
+    "CommandModes",
 ]
 
 
@@ -2043,6 +2045,91 @@ class Scene(TypedDict):
     joints: List["SceneJoint"]
 
 
+class CommandModesEquilibrium(TypedDict):
+    """Where the modes are: at rest under the loads."""
+
+    solved: bool
+    iterations: int
+    residual: float
+    gap_m: float
+    largest_motion_m: float
+    largest_turn_rad: float
+
+
+class _CommandModesConfigurationAlways(TypedDict):
+    configuration: str
+    doubts: List["CommandModesDoubt"]
+    facts: List["CommandModesDoubt"]
+    method: Literal["dense", "tree", "sparse"]
+    complete_below_hz: Optional[float]
+    freedoms: int
+    vibration_modes: Optional[int]
+    rigid_body_modes: int
+    unstable_modes: int
+    undecided_modes: int
+    massless_directions: Optional[int]
+    modes: List["CommandModesMode"]
+    redundant_constraints: Optional[List[List[str]]]
+    equilibrium: "CommandModesEquilibrium"
+
+
+class CommandModesConfiguration(_CommandModesConfigurationAlways, total=False):
+    """A configuration, answered."""
+
+    damped_modes: List["CommandModesDampedMode"]
+
+
+class CommandModesFailed(TypedDict):
+    """A configuration without an answer."""
+
+    configuration: str
+    error: str
+
+
+class CommandModesDoubt(TypedDict):
+    """A fact or a doubt, with its place in a file where that is known."""
+
+    kind: str
+    text: str
+    configuration: Optional[str]
+    file: Optional[str]
+    line: Optional[int]
+    column: Optional[int]
+    pointer: Optional[str]
+
+
+class _CommandModesModeAlways(TypedDict):
+    index: Optional[int]
+    name: Optional[str]
+    frequency_hz: Optional[float]
+    frequency_error_hz: Optional[float]
+    kind: Literal["flexible", "rigid_body", "unstable", "undecided"]
+    omega_squared: float
+    omega_squared_error: float
+    repeated: int
+    residual: float
+    orthogonality: float
+
+
+class CommandModesMode(_CommandModesModeAlways, total=False):
+    """A mode."""
+
+    shape: Dict[str, float]
+
+
+class CommandModesDampedMode(TypedDict):
+    """A mode with damping, a root of the equations of motion."""
+
+    index: Optional[int]
+    kind: Literal["oscillating", "overdamped", "rigid_body", "unstable", "undecided"]
+    natural_frequency_hz: Optional[float]
+    natural_frequency_error_hz: Optional[float]
+    damped_frequency_hz: Optional[float]
+    damping_ratio_percent: Optional[float]
+    decay_per_s: Optional[float]
+    residual: float
+
+
 ModelNumber = Union[float, str]
 ModelVector = List["ModelNumber"]
 ModelPosition = Union[str, "ModelVector"]
@@ -2060,3 +2147,7 @@ StudyGoal = Union[
 ProfilePair = List[float]
 ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
 ProfileOrigin = Literal["published", "identified", "assumed"]
+CommandModes = Union[
+    List[Union["CommandModesConfiguration", "CommandModesFailed"]], "CommandModesConfiguration",
+    "CommandModesFailed"
+]

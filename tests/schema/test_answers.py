@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""
+What commands print as JSON is what their schemas say. Every command with a schema has command lines here, which print every member of it;
+those that may be absent are absent once, and what may be null is null once, unless it is excused. Changed answers are refused.
+The tests of cli/ hold every other command line against the schemas, too (cli/common_cli.py).
+"""
+import copy
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from common_schema import at, changed
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path.append(str(TESTS / "support"))
+import large  # noqa: E402
+import printed  # noqa: E402
+from suite import PROGRAM, SOURCE  # noqa: E402
+
+# The models: "tests/..." and "problems/..." are files, the others are made here.
+LINES = {
+    "modes": [
+        ["tests/models/pendulum.json", "--shapes"],
+        ["tests/models/massless.json"],
+        ["tests/models/apart.json"],
+        ["tests/models/damped_linkage.json", "--damped"],
+        ["problems/stick.json", "-c", "installed", "--shapes"],
+        ["tests/models/falling.json", "-c", "default"],
+        ["link.json", "--count", "2"],
+        ["link.json", "--count", "2", "--damped"],
+        ["loop.json", "--count", "2"],
+        ["standing.json", "--damped"],
+    ],
+}
+# What is of studies alone, or of several commands, and not seen in these lines as null, or as something else.
+EXCUSED = {
+    "modes": {"doubt/configuration", "doubt/file", "doubt/line", "doubt/column", "doubt/pointer"},
+}
+# A pendulum upside down, which its spring holds so that rounding hides whether it stands.
+STANDING = {
+    "format": "modetune-model/1", "dimension": 2, "gravity_m_per_s2": [0, -8],
+    "bodies": [{"name": "bob", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 1]}],
+    "joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0]}],
+    "springs": [{"name": "k", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": 8}],
+}
+
+
+def loop():
+    """A link whose end lies in a slot, and in the same once more: an equation follows from another."""
+    slot = {"type": "pin-in-slot", "bodies": ["ground", "beam.end"], "at": "tip", "axis": [1, 0]}
+    model = large.link(100)
+    model["joints"] += [{"name": f"tip{i}", **slot} for i in range(2)]
+    return model
+
+
+def schema_of(command):
+    return json.loads((SOURCE / f"schemas/command_{command}.schema.json").read_text(encoding="utf-8"))
+
+
+def commands():
+    return sorted(path.name[len("command_"):-len(".schema.json")] for path in (SOURCE / "schemas").glob("command_*.schema.json"))
+
+
+class Seen:
+    """Which members of a schema have been there, absent, null and something else."""
+
+    def __init__(self, schema):
+        self.schema, self.there, self.absent, self.null, self.value = schema, set(), set(), set(), set()
+        self.all, self.optional, self.nullable = set(), set(), set()
+
+    def look(self, part, value, name=""):
+        if "$ref" in part:
+            name = part["$ref"].rsplit("/", 1)[1]
+            part = self.schema["definitions"][name]
+        for one in part.get("anyOf", []) + part.get("allOf", []):
+            if self.fits(one, value):
+                self.look(one, value, name)
+        if "if" in part and value is not None:
+            self.look(part["then"], value, name)
+        if isinstance(value, list) and "items" in part:
+            for item in value:
+                self.look(part["items"], item, name)
+        if isinstance(value, dict) and "properties" in part:
+            for key, inner in part["properties"].items():
+                place = f"{name}/{key}" if name else key
+                if key not in value:
+                    self.absent.add(place)
+                    continue
+                self.there.add(place)
+                (self.null if value[key] is None else self.value).add(place)
+                self.look(inner, value[key], place)
+
+    def fits(self, part, value):
+        part = self.schema["definitions"][part["$ref"].rsplit("/", 1)[1]] if "$ref" in part else part
+        return isinstance(value, dict) == ("properties" in part) and (not isinstance(value, dict) or set(part["required"]) <= set(value))
+
+    def want(self, part=None, name=""):
+        """What is to be seen."""
+        part = self.schema if part is None else part
+        if "properties" in part:
+            for key, inner in part["properties"].items():
+                place = f"{name}/{key}" if name else key
+                self.all.add(place)
+                self.optional |= {place} if key not in part["required"] else set()
+                kinds = inner.get("type", [])
+                self.nullable |= {place} if "null" in (kinds if isinstance(kinds, list) else [kinds]) or "if" in inner else set()
+                for below in (inner, inner.get("items", {}), inner.get("then", {})):
+                    self.want(below, place)
+        if not name:
+            for below, definition in part.get("definitions", {}).items():
+                self.want(definition, below)
+
+
+class Answers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.kept.name)
+        for name in ("tests", "problems"):
+            (cls.folder / name).symlink_to(SOURCE / name)
+        for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING)):
+            (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
+        cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.kept.cleanup()
+
+    @classmethod
+    def printed(cls, command, line):
+        return subprocess.run([PROGRAM, command, *line, "--format", "json"], cwd=cls.folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              encoding="utf-8", check=False).stdout
+
+    def test_every_schema_has_command_lines(self):
+        self.assertEqual(sorted(LINES), commands())
+
+    def test_answers_are_what_the_schemas_say(self):
+        for command, lines in LINES.items():
+            for line, text in zip(lines, self.answers[command]):
+                self.assertNotEqual(text, "", [command, *line])
+                self.assertEqual(printed.faults([command, *line, "--format", "json"], text), [], [command, *line])
+
+    def test_all_that_the_schemas_say_is_printed(self):
+        for command, texts in self.answers.items():
+            schema = schema_of(command)
+            seen = Seen(schema)
+            seen.want()
+            for text in texts:
+                seen.look(schema, json.loads(text))
+            excused = EXCUSED.get(command, set())
+            self.assertEqual(seen.all - seen.value - excused, set(), f"{command}: nowhere, or null everywhere")
+            self.assertEqual(seen.optional - seen.absent, set(), f"{command}: always there")
+            self.assertEqual(seen.nullable - seen.null - excused, set(), f"{command}: never null")
+
+    def test_a_changed_answer_is_refused(self):
+        for command, texts in self.answers.items():
+            text = max(texts, key=len)
+            answer = json.loads(text)
+            path = (0,) if isinstance(answer, list) else ()
+            inner = at(answer, path)
+            for key in inner:
+                for change in ("rename", ("type", {"x": []})):
+                    wrong = changed(copy.deepcopy(answer), (*path, key), change)
+                    self.assertNotEqual(printed.faults([command, "--format", "json"], json.dumps(wrong)), [], f"{command}: {key}: {change}")
+
+    def test_the_program_prints_the_schemas(self):
+        for command in commands():
+            for name in {f"command_{command}", command if not (SOURCE / f"schemas/{command}.schema.json").exists() else f"command_{command}"}:
+                done = subprocess.run([PROGRAM, "schema", name], stdout=subprocess.PIPE, encoding="utf-8", check=True)
+                self.assertEqual(json.loads(done.stdout), schema_of(command), name)
+
+
+if __name__ == "__main__":
+    unittest.main()
