@@ -286,79 +286,187 @@ static bool has_none(const sensitivity_table *v, int k)
     return v->independence[k].opens || v->independence[k].blocks;
 }
 
-static void json_no_derivatives(mt_json_writer *w, const sensitivity_table *v)
+/* What one parameter does to one mode. */
+typedef struct slope_row {
+    const char *parameter;
+    const char *unit;
+    double value;
+    double hz_per_percent;
+    double hz_per_unit;
+} slope_row;
+
+#define THIS slope_row
+static const mt_field slope_fields[] = {
+    MT_F_TEXT("parameter", parameter, "Its name."),
+    MT_F_TEXT_OR_NULL("unit", unit, "SI unit of its value; null: none given."),
+    MT_F_NUMBER("value", value, "Its value in this configuration."),
+    MT_F_NUMBER_OR_NULL("hz_per_percent", hz_per_percent,
+                        "Change of the frequency for one per cent more of it; null: it has no "
+                        "derivative [Hz]."),
+    MT_F_NUMBER_OR_NULL(
+        "hz_per_unit", hz_per_unit,
+        "Derivative of the frequency: Hz for one of its unit; null: it has none "
+        "[Hz per unit]."),
+};
+static const mt_record slope_record =
+    MT_F_RECORD_OF(slope_fields, "slope", "What one parameter does to one mode.");
+static const mt_record_column slope_columns[] = {
+    MT_R_COLUMN(parameter, "parameter", 0, MT_IN_CSV),
+    MT_R_COLUMN(value, "value", HZ_DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(hz_per_percent, "Hz per %", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(hz_per_unit, "Hz per unit", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(unit, "unit", 0, MT_IN_CSV),
+};
+static const mt_record_table slope_rows = MT_R_TABLE_OF(slope_record, slope_columns);
+#undef THIS
+
+/* A mode, with what all parameters do to it. */
+typedef struct mode_row {
+    int index;
+    double hz;
+    bool repeated;
+    slope_row *slopes;
+    int n;
+} mode_row;
+
+#define THIS mode_row
+static const mt_field mode_fields[] = {
+    MT_F_COUNT("index", index, 1, "Number among the vibration modes, from 1."),
+    MT_F_NUMBER("frequency_hz", hz, "Natural frequency."),
+    MT_F_FLAG("repeated", repeated,
+              "Other modes share its frequency: none of them has a derivative of its own, and "
+              "the values are those along the directions into which a parameter splits them, "
+              "ascending."),
+    MT_F_LIST("sensitivities", slopes, n, slope_row, slope_record, "One of each parameter."),
+};
+static const mt_record mode_record = MT_F_RECORD_OF(mode_fields, "mode", "A vibration mode.");
+static const mt_record_column mode_columns[] = {
+    MT_R_COLUMN(index, "mode", 0, MT_IN_CSV),
+    MT_R_COLUMN(hz, "frequency [Hz]", HZ_DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(repeated, "repeated", 0, MT_IN_CSV),
+};
+static const mt_record_table mode_rows = MT_R_TABLE_OF(mode_record, mode_columns);
+#undef THIS
+
+typedef struct no_derivative_row {
+    const char *parameter;
+    const char *reason;
+    mt_joints_row joints;
+} no_derivative_row;
+
+#define THIS no_derivative_row
+static const char *const reasons[] = {"opens_joints", "blocks_motion"};
+static const mt_field no_derivative_fields[] = {
+    MT_F_TEXT("parameter", parameter, "Its name."),
+    MT_F_CHOICE("reason", reason, reasons,
+                "\"opens_joints\": the joints could not stay closed at any other value; "
+                "\"blocks_motion\": they are redundant at this value only, and block a motion "
+                "at any other."),
+    MT_F_TEXTS("joints", joints.name, joints.n, "These joints.", .flat = true),
+};
+static const mt_record no_derivative_record =
+    MT_F_RECORD_OF(no_derivative_fields, "no_derivative", "A parameter without derivative.");
+#undef THIS
+
+typedef struct configuration_row {
+    const char *configuration;
+    mt_lowest_method method;
+    mode_row *modes;
+    int n_modes;
+    no_derivative_row *without;
+    int n_without;
+} configuration_row;
+
+#define THIS configuration_row
+static const mt_field configuration_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Its name."),
+    MT_F_ENUM("method", method, mt_lowest_method, mt_cli_methods,
+              "\"dense\": by all modes; \"tree\", \"sparse\": by the lowest ones of a large "
+              "mechanism."),
+    MT_F_LIST("modes", modes, n_modes, mode_row, mode_record,
+              "The lowest vibration modes, as many as --count says."),
+    MT_F_LIST("no_derivatives", without, n_without, no_derivative_row, no_derivative_record,
+              "Parameters by which no frequency has a derivative."),
+};
+static const mt_record configuration_record =
+    MT_F_RECORD_OF(configuration_fields, "configuration", "A configuration, answered.");
+#undef THIS
+
+static slope_row slope_row_of(const sensitivity_table *v, int i, int k)
 {
-    mt_json_open(w, "no_derivatives", '[');
-    for (int k = 0; k < v->n; k++) {
-        if (has_none(v, k)) {
-            mt_json_open(w, NULL, '{');
-            mt_json_put_string(w, "parameter", parameter_name(v, k));
-            mt_json_put_string(w, "reason",
-                               v->independence[k].opens ? "opens_joints" : "blocks_motion");
-            mt_cli_json_joints(w, "joints", &v->independence[k].joints);
-            mt_json_close(w);
-        }
-    }
-    mt_json_close(w);
+    return (slope_row){
+        .parameter = parameter_name(v, k),
+        .unit = parameter_si_unit(v, k),
+        .value = v->value[k],
+        .hz_per_percent = sensitivity_table_per_percent(v, i, k),
+        .hz_per_unit = v->per_unit[i + ((ptrdiff_t)k * v->room)],
+    };
 }
 
-static void write_sensitivity_json(mt_json_writer *w, const sensitivity_table *v)
+/* Without slopes. */
+static mode_row mode_row_of(const sensitivity_table *v, int i)
 {
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
-    mt_json_put_string(w, "method", mt_cli_methods[v->way]);
-    mt_json_open(w, "modes", '[');
+    return (mode_row){.index = i + 1, .hz = v->hz[i], .repeated = v->repeated[i]};
+}
+
+static mt_status configuration_row_of(sensitivity_table *v, configuration_row *out, mt_err *err)
+{
+    const size_t n = (size_t)v->n;
+    *out = (configuration_row){
+        .configuration = mt_loaded_model_configuration(v->s, v->c),
+        .method = v->way,
+        .modes = mt_arena_alloc(&v->mem, (size_t)v->modes, sizeof *out->modes),
+        .n_modes = v->modes,
+        .without = mt_arena_alloc(&v->mem, n, sizeof *out->without),
+    };
+    MT_TRY(mt_arena_check(&v->mem, err));
     for (int i = 0; i < v->modes; i++) {
-        mt_json_open(w, NULL, '{');
-        mt_json_put_integer(w, "index", i + 1);
-        mt_json_put_number(w, "frequency_hz", v->hz[i]);
-        mt_json_put_bool(w, "repeated", v->repeated[i]);
-        mt_json_open(w, "sensitivities", '[');
-        for (int k = 0; k < v->n; k++) {
-            mt_json_open(w, NULL, '{');
-            mt_json_put_string(w, "parameter", parameter_name(v, k));
-            mt_json_put_string(w, "unit", parameter_si_unit(v, k));
-            mt_json_put_number(w, "value", v->value[k]);
-            mt_json_put_number(w, "hz_per_percent", sensitivity_table_per_percent(v, i, k));
-            mt_json_put_number(w, "hz_per_unit", v->per_unit[i + ((ptrdiff_t)k * v->room)]);
-            mt_json_close(w);
+        mode_row *const row = &out->modes[i];
+        *row = mode_row_of(v, i);
+        row->slopes = mt_arena_alloc(&v->mem, n, sizeof *row->slopes);
+        MT_TRY(mt_arena_check(&v->mem, err));
+        for (row->n = 0; row->n < v->n; row->n++) {
+            row->slopes[row->n] = slope_row_of(v, i, row->n);
         }
-        mt_json_close(w);
-        mt_json_close(w);
     }
-    mt_json_close(w);
-    json_no_derivatives(w, v);
-    mt_json_close(w);
+    for (int k = 0; k < v->n; k++) {
+        if (has_none(v, k)) {
+            out->without[out->n_without++] = (no_derivative_row){
+                .parameter = parameter_name(v, k),
+                .reason = reasons[v->independence[k].opens ? 0 : 1],
+                .joints = mt_joints_row_of(&v->independence[k].joints, &v->mem),
+            };
+        }
+    }
+    return mt_arena_check(&v->mem, err);
+}
+
+static mt_status write_sensitivity_json(mt_json_writer *w, sensitivity_table *v, mt_err *err)
+{
+    configuration_row row;
+    MT_TRY(configuration_row_of(v, &row, err));
+    mt_record_put_object(w, NULL, &configuration_record, &row, 0, NULL);
+    return MT_OK;
 }
 
 static mt_table csv_table(void)
 {
     mt_table t = mt_table_default();
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
-    mt_table_column(&t, "mode", "index", MT_ALIGN_RIGHT);
-    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
-    mt_table_column(&t, "repeated", "repeated", MT_ALIGN_LEFT);
-    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
-    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
-    mt_table_column(&t, "Hz per %", "hz_per_percent", MT_ALIGN_POINT);
-    mt_table_column(&t, "Hz per unit", "hz_per_unit", MT_ALIGN_POINT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_record_columns(&t, &mode_rows, MT_IN_CSV);
+    mt_table_record_columns(&t, &slope_rows, MT_IN_CSV);
     return t;
 }
 
 static void fill_csv(mt_table *t, const sensitivity_table *v)
 {
     for (int i = 0; i < v->modes; i++) {
+        const mode_row mode = mode_row_of(v, i);
         for (int k = 0; k < v->n; k++) {
+            const slope_row row = slope_row_of(v, i, k);
             mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
-            mt_table_integer(t, i + 1);
-            mt_table_number(t, v->hz[i], HZ_DIGITS);
-            mt_table_text(t, v->repeated[i] ? "true" : "false");
-            mt_table_text(t, parameter_name(v, k));
-            mt_table_number(t, v->value[k], HZ_DIGITS);
-            mt_table_number(t, sensitivity_table_per_percent(v, i, k), DIGITS);
-            mt_table_number(t, v->per_unit[i + ((ptrdiff_t)k * v->room)], DIGITS);
-            mt_table_text(t, parameter_si_unit(v, k));
+            mt_table_record_row(t, &mode_rows, MT_IN_CSV, &mode);
+            mt_table_record_row(t, &slope_rows, MT_IN_CSV, &row);
         }
     }
 }
@@ -447,12 +555,11 @@ static mt_status show_configuration_slopes(const mt_args *args, const mt_loaded_
 {
     sensitivity_table v = {.s = NULL};
     const int modes = args->count > 0 ? args->count : DEFAULT_MODES;
-    const mt_status rc =
-        sensitivity_table_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
+    mt_status rc = sensitivity_table_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
     if (rc == MT_OK) {
         switch (args->format) {
         case MT_FORMAT_JSON:
-            write_sensitivity_json(w, &v);
+            rc = write_sensitivity_json(w, &v, err);
             break;
         case MT_FORMAT_CSV:
             fill_csv(t, &v);
@@ -526,5 +633,6 @@ const mt_command mt_command_sensitivity = {
     .details = "Prints exact derivatives of the first natural frequencies (default: 6): the "
                "change in Hz for 1 % more of a parameter. Repeated modes have directional "
                "derivatives, given as a set.",
+    .answer = {&configuration_record, MT_ANSWER_CONFIGURATIONS},
     .run = run_sensitivity,
 };

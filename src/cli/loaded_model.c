@@ -328,7 +328,7 @@ static const mt_field joints_fields[] = {
 const mt_record mt_joints_record = MT_F_BARE_RECORD_OF(joints_fields);
 #undef THIS
 
-static mt_joints_row joints_row_of(const mt_joint_names *joints, mt_arena *mem)
+mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem)
 {
     mt_joints_row row = {.name = mt_arena_alloc(mem, (size_t)joints->n, sizeof *row.name)};
     for (; row.name != NULL && row.n < joints->n; row.n++) {
@@ -346,7 +346,7 @@ mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row 
     for (*n = 0; *n < count; (*n)++) {
         mt_joint_names joints;
         MT_TRY(mt_linear_redundant_set(lin, *n, mem, &joints, err));
-        (*out)[*n] = joints_row_of(&joints, mem);
+        (*out)[*n] = mt_joints_row_of(&joints, mem);
     }
     return mt_arena_check(mem, err);
 }
@@ -360,7 +360,7 @@ void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
     }
 }
 
-void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints)
+static void json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints)
 {
     mt_json_open_flat(w, member, '[');
     for (int i = 0; i < joints->n; i++) {
@@ -378,7 +378,7 @@ void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness)
     mt_json_open(w, "dead_centre", '{');
     mt_json_put_number(w, "distance", nearness->distance);
     mt_json_put_number(w, "independence", nearness->independence);
-    mt_cli_json_joints(w, "joints", &nearness->joints);
+    json_joints(w, "joints", &nearness->joints);
     mt_json_close(w);
 }
 

@@ -97,11 +97,10 @@ typedef struct mt_joints_row {
     int n;
 } mt_joints_row;
 extern const mt_record mt_joints_record;
+mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem);
 /* Sets of joints whose equations depend on each other: *n of them, *out not NULL, in mem. */
 mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
                            mt_err *err);
-/* Names of joints as a list. */
-void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints);
 /* Member "dead_centre" of an open object: null, or the distance to one and the joints whose
  * equations become dependent there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);

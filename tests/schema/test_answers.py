@@ -34,6 +34,13 @@ LINES = {
         ["loop.json", "--count", "2"],
         ["standing.json", "--damped"],
     ],
+    "sensitivity": [
+        ["tests/models/pendulum.json", "-c", "twice"],
+        ["tests/models/four_bar.json", "--count", "1"],
+        ["tests/models/apart.json"],
+        ["problems/stick.json", "--count", "1"],
+        ["cranks.json"],
+    ],
 }
 # What is of studies alone, or of several commands, and not seen in these lines as null, or as something else.
 EXCUSED = {
@@ -45,6 +52,16 @@ STANDING = {
     "bodies": [{"name": "bob", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 1]}],
     "joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0]}],
     "springs": [{"name": "k", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": 8}],
+}
+
+# Parallel cranks, the last with a length of its own: no length but the drawn one closes the joints.
+CRANKS = {
+    "format": "modetune-model/1", "dimension": 2, "parameters": {"far": 3, "other": 3},
+    "bodies": [{"name": f"crank{i}", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [4 * i, 1]} for i in range(3)]
+    + [{"name": "coupler", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [4, 3]}],
+    "joints": [{"name": f"foot{i}", "type": "revolute", "bodies": ["ground", f"crank{i}"], "at": [4 * i, 0]} for i in range(3)]
+    + [{"name": f"head{i}", "type": "revolute", "bodies": [f"crank{i}", "coupler"], "at": [[4 * i, y], [4 * i, 3]]} for i, y in enumerate((3, "other", "far"))],
+    "springs": [{"name": "k", "type": "torsion", "joint": "foot0", "stiffness_n_m_per_rad": 8}],
 }
 
 
@@ -121,7 +138,7 @@ class Answers(unittest.TestCase):
         cls.folder = Path(cls.kept.name)
         for name in ("tests", "problems"):
             (cls.folder / name).symlink_to(SOURCE / name)
-        for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING)):
+        for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS)):
             (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
         cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}
 

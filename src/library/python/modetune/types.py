@@ -13,7 +13,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
-    "CommandModes",
+    "CommandModes", "CommandSensitivity",
 ]
 
 
@@ -2130,6 +2130,49 @@ class CommandModesDampedMode(TypedDict):
     residual: float
 
 
+class CommandSensitivityConfiguration(TypedDict):
+    """A configuration, answered."""
+
+    configuration: str
+    method: Literal["dense", "tree", "sparse"]
+    modes: List["CommandSensitivityMode"]
+    no_derivatives: List["CommandSensitivityNoDerivative"]
+
+
+class CommandSensitivityFailed(TypedDict):
+    """A configuration without an answer."""
+
+    configuration: str
+    error: str
+
+
+class CommandSensitivityMode(TypedDict):
+    """A vibration mode."""
+
+    index: int
+    frequency_hz: float
+    repeated: bool
+    sensitivities: List["CommandSensitivitySlope"]
+
+
+class CommandSensitivitySlope(TypedDict):
+    """What one parameter does to one mode."""
+
+    parameter: str
+    unit: Optional[str]
+    value: float
+    hz_per_percent: Optional[float]
+    hz_per_unit: Optional[float]
+
+
+class CommandSensitivityNoDerivative(TypedDict):
+    """A parameter without derivative."""
+
+    parameter: str
+    reason: Literal["opens_joints", "blocks_motion"]
+    joints: List[str]
+
+
 ModelNumber = Union[float, str]
 ModelVector = List["ModelNumber"]
 ModelPosition = Union[str, "ModelVector"]
@@ -2150,4 +2193,8 @@ ProfileOrigin = Literal["published", "identified", "assumed"]
 CommandModes = Union[
     List[Union["CommandModesConfiguration", "CommandModesFailed"]], "CommandModesConfiguration",
     "CommandModesFailed"
+]
+CommandSensitivity = Union[
+    List[Union["CommandSensitivityConfiguration", "CommandSensitivityFailed"]],
+    "CommandSensitivityConfiguration", "CommandSensitivityFailed"
 ]
