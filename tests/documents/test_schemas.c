@@ -497,7 +497,9 @@ static void add_answer(mt_test *t, mt_text *out, const mt_command *command)
     add_head(out, "cli", command->name);
     switch (command->answer.form) {
     case MT_ANSWER_ONE:
-        add_record_or_reference(t, out, record);
+        mt_text_addf(out, "\"description\": \"What `modetune %s --format json` prints.\", ",
+                     command->name);
+        add_record(t, out, record);
         break;
     case MT_ANSWER_CONFIGURATIONS:
         REQUIRE(t, record->name != NULL);

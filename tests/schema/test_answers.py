@@ -34,6 +34,10 @@ LINES = {
         ["loop.json", "--count", "2"],
         ["standing.json", "--damped"],
     ],
+    "mac": [
+        ["problems/inceptor.json:installed", "problems/inceptor.json:table_8"],
+        ["tests/models/ring.json", "tests/models/ring.json", "--count", "8"],
+    ],
     "sensitivity": [
         ["tests/models/pendulum.json", "-c", "twice"],
         ["tests/models/four_bar.json", "--count", "1"],

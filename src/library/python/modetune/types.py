@@ -13,7 +13,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
-    "CommandModes", "CommandSensitivity",
+    "CommandMac", "CommandModes", "CommandSensitivity",
 ]
 
 
@@ -2043,6 +2043,35 @@ class Scene(TypedDict):
     gravity: Optional[List[float]]
     designs: List["SceneDesign"]
     joints: List["SceneJoint"]
+
+
+class CommandMacPair(TypedDict):
+    """A mode of A and the mode of B that it is paired with."""
+
+    a: int
+    b: int
+    mac: float
+    frequency_a_hz: float
+    frequency_b_hz: float
+
+
+class CommandMacSubspace(TypedDict):
+    """Repeated modes, compared as a space."""
+
+    first_a: int
+    modes: int
+    mac: List[Optional[float]]
+
+
+class CommandMac(TypedDict):
+    """What `modetune mac --format json` prints."""
+
+    pairs: List["CommandMacPair"]
+    matrix: List[List[Optional[float]]]
+    subspaces: List["CommandMacSubspace"]
+    vibration_modes: List[Optional[float]]
+    channels: List[str]
+    notes: List[str]
 
 
 class CommandModesEquilibrium(TypedDict):
