@@ -217,7 +217,7 @@ static mt_status examine_reference(const mt_study *s, const mt_reference *r,
     mt_status rc =
         mt_model_numbers(r->model, r->configuration, 0, NULL, NULL, &mem, value, err);
     if (rc == MT_OK) {
-        mt_model_lint(r->model, r->configuration, value, &list);
+        mt_model_lint(r->model, r->configuration, value, false, &list);
     }
     for (int i = 0; rc == MT_OK && i < list.n; i++) {
         if (list.items[i].level == MT_LEVEL_WARNING) {

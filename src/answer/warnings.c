@@ -778,7 +778,7 @@ static mt_status list_configuration_warnings(const known *k, int n_inputs, const
         list->items[i].configuration = m->configurations[c].name.s;
         list->items[i].file = m->path;
     }
-    mt_model_lint(m, c, value, list);
+    mt_model_lint(m, c, value, false, list);
     mt_warning_accept(list, 0, &m->accepted);
     for (int i = 0; i < list->n; i++) {
         mt_warning *const d = &list->items[i];

@@ -344,7 +344,11 @@ static mt_status read_expression(mt_loaded_model *s, const char *text, mt_signal
         mt_arena_alloc(&s->mem, (size_t)model->n_parameters + 1, sizeof *nodes);
     mt_expr e;
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(mt_expr_parse(text, lookup, model, NULL, 0, &s->mem, &e, err));
+    const mt_expr_scope scope = {.lookup = lookup,
+                                 .context = model,
+                                 .curves = model->curves,
+                                 .n_curves = model->n_curves};
+    MT_TRY(mt_expr_parse(text, &scope, &s->mem, &e, err));
     MT_TRY(mt_program_init(p, 1, &s->mem, err));
     for (int i = 0; i < model->n_parameters; i++) {
         nodes[i] = mt_program_const(p, s->values[i]);

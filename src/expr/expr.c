@@ -14,31 +14,33 @@
 
 #include "base/format.h"
 #include "base/text.h"
+#include "expr/interpolant.h"
 #include "expr/kind.h"
 #include "expr/op.h"
 #include "expr/units.h"
 
 /* One list makes the table of functions, that of constants and the names that are reserved. */
-#define FUNCTION_LIST(X)    \
-    X("sqrt", MT_OP_SQRT)   \
-    X("cbrt", MT_OP_CBRT)   \
-    X("exp", MT_OP_EXP)     \
-    X("ln", MT_OP_LN)       \
-    X("log10", MT_OP_LOG10) \
-    X("sin", MT_OP_SIN)     \
-    X("cos", MT_OP_COS)     \
-    X("tan", MT_OP_TAN)     \
-    X("asin", MT_OP_ASIN)   \
-    X("acos", MT_OP_ACOS)   \
-    X("atan", MT_OP_ATAN)   \
-    X("sinh", MT_OP_SINH)   \
-    X("cosh", MT_OP_COSH)   \
-    X("tanh", MT_OP_TANH)   \
-    X("abs", MT_OP_ABS)     \
-    X("atan2", MT_OP_ATAN2) \
-    X("min", MT_OP_MIN)     \
-    X("max", MT_OP_MAX)     \
-    X("hypot", MT_OP_HYPOT) \
+#define FUNCTION_LIST(X)      \
+    X("sqrt", MT_OP_SQRT)     \
+    X("cbrt", MT_OP_CBRT)     \
+    X("exp", MT_OP_EXP)       \
+    X("ln", MT_OP_LN)         \
+    X("log10", MT_OP_LOG10)   \
+    X("sin", MT_OP_SIN)       \
+    X("cos", MT_OP_COS)       \
+    X("tan", MT_OP_TAN)       \
+    X("asin", MT_OP_ASIN)     \
+    X("acos", MT_OP_ACOS)     \
+    X("atan", MT_OP_ATAN)     \
+    X("sinh", MT_OP_SINH)     \
+    X("cosh", MT_OP_COSH)     \
+    X("tanh", MT_OP_TANH)     \
+    X("abs", MT_OP_ABS)       \
+    X("interp", MT_OP_INTERP) \
+    X("atan2", MT_OP_ATAN2)   \
+    X("min", MT_OP_MIN)       \
+    X("max", MT_OP_MAX)       \
+    X("hypot", MT_OP_HYPOT)   \
     X("pow", MT_OP_POW)
 /* The constants that are units are worth what expr/units.h says; pi is its own. */
 #define CONSTANT_LIST(X) \
@@ -199,10 +201,7 @@ typedef struct parser {
     size_t number_end; /* 0: none yet */
     int depth;
     int length; /* of code */
-    mt_expr_lookup lookup;
-    const void *context;
-    const char *const *names;
-    int n_names;
+    const mt_expr_scope *scope;
     mt_err *err;
     mt_code code[MT_EXPR_MAX_CODE];
 } parser;
@@ -326,7 +325,7 @@ static const char *suggestion(const parser *p, const char *name, bool function)
     const char *const *const reserved = mt_expr_names(&n);
     const char *const of_ours = mt_text_nearest(name, reserved, n);
     const char *const of_theirs =
-        mt_text_nearest(name, p->names, p->names == NULL ? 0 : p->n_names);
+        mt_text_nearest(name, p->scope->names, p->scope->names == NULL ? 0 : p->scope->n_names);
     if (function) {
         return of_ours;
     }
@@ -350,12 +349,78 @@ static mt_status unknown_name(parser *p, size_t from, size_t length, bool functi
                    (int)SHOWN, name, near);
 }
 
+/* The curve with a name of `length` bytes from `from`. */
+static mt_status find_curve(const parser *p, size_t from, size_t length,
+                            const mt_interpolant **out)
+{
+    const mt_expr_scope *const scope = p->scope;
+    const char *near = NULL;
+    char name[MT_EXPR_MAX_LENGTH + 1];
+    memcpy(name, p->text + from, length);
+    name[length] = '\0';
+    for (int i = 0; i < scope->n_curves; i++) {
+        const char *const known = scope->curves[i].name;
+        if (known != NULL && strcmp(known, name) == 0) {
+            *out = &scope->curves[i];
+            return MT_OK;
+        }
+        near = near != NULL || known == NULL ? near : mt_text_nearest(name, &known, 1);
+    }
+    return mt_fail(p->err, MT_E_INPUT, "at character %d: unknown curve \"%.*s\"%s%s%s",
+                   character(p, from), (int)SHOWN, name,
+                   near != NULL           ? "; did you mean \""
+                   : scope->n_curves == 0 ? " (the model has no \"curves\")"
+                                          : "",
+                   near != NULL ? near : "", near != NULL ? "\"?" : "");
+}
+
+/* The name of a curve, perhaps in quotes, and the comma behind it. */
+static mt_status parse_curve(parser *p, const mt_interpolant **out)
+{
+    static const char what[] = "the name of a curve";
+    const char quote = peek(p);
+    const bool quoted = quote == '\'' || quote == '"';
+    p->at += quoted;
+    const size_t from = p->at;
+    if (!is_name_start(p->text[from])) {
+        return expected(p, what);
+    }
+    while (is_name_part(p->text[p->at])) {
+        p->at++;
+    }
+    MT_TRY(find_curve(p, from, p->at - from, out));
+    if (quoted && p->text[p->at] != quote) {
+        return expected(p, "the end of the curve's name in quotes");
+    }
+    p->at += quoted;
+    if (peek(p) != ',') {
+        return expected(p, "\",\" and where to read the curve");
+    }
+    p->at++;
+    return MT_OK;
+}
+
+static mt_status parse_interp(parser *p)
+{
+    const mt_interpolant *curve = NULL;
+    const size_t open = p->at++;
+    MT_TRY(parse_curve(p, &curve));
+    MT_TRY(deeper(p, parse_sum));
+    MT_TRY(parse_close(p, open));
+    MT_TRY(emit_op(p, MT_OP_INTERP));
+    p->code[p->length - 1].curve = curve;
+    return MT_OK;
+}
+
 /* The arguments of a function whose name begins at `from`; p is at the "(". */
 static mt_status parse_call(parser *p, size_t from, size_t length)
 {
     mt_op op = MT_OP_CONST;
     if (!find_function(p->text + from, length, &op)) {
         return unknown_name(p, from, length, true);
+    }
+    if (op == MT_OP_INTERP) {
+        return parse_interp(p);
     }
     const size_t open = p->at++;
     int count = 0;
@@ -399,6 +464,13 @@ static bool is_factor(parser *p, size_t from)
     return next == '*' || next == '/' || next == '^';
 }
 
+/* -1: there is none of this name. */
+static int find_parameter(const parser *p, const char *name, size_t length)
+{
+    const mt_expr_scope *const scope = p->scope;
+    return scope->lookup == NULL ? -1 : scope->lookup(scope->context, name, length);
+}
+
 static mt_status parse_name(parser *p)
 {
     const size_t from = p->at;
@@ -423,7 +495,7 @@ static mt_status parse_name(parser *p)
         return mt_fail(p->err, MT_E_INPUT, "at character %d: function \"%.*s\" without \"(\"",
                        character(p, from), (int)length, name);
     }
-    const int param = p->lookup == NULL ? -1 : p->lookup(p->context, name, length);
+    const int param = find_parameter(p, name, length);
     if (param < 0) {
         return unknown_name(p, from, length, false);
     }
@@ -448,7 +520,7 @@ static bool is_known_name(const parser *p, const char *name, size_t length)
     mt_kind kind = MT_KIND_NUMBER;
     mt_op op = MT_OP_CONST;
     return length > 0 && (find_constant(name, length, &value, &kind) ||
-                          (p->lookup != NULL && p->lookup(p->context, name, length) >= 0) ||
+                          find_parameter(p, name, length) >= 0 ||
                           (name[length] == '(' && find_function(name, length, &op)));
 }
 
@@ -636,10 +708,10 @@ static mt_status left_over(parser *p)
     return expected(p, "an operator or the end");
 }
 
-mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
-                        const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
-                        mt_err *err)
+mt_status mt_expr_parse(const char *text, const mt_expr_scope *scope, mt_arena *mem,
+                        mt_expr *out, mt_err *err)
 {
+    static const mt_expr_scope nothing = {0};
     if (strnlen(text, MT_EXPR_MAX_LENGTH + 1) > MT_EXPR_MAX_LENGTH) {
         return mt_fail(err, MT_E_INPUT, "the expression is longer than %d bytes",
                        (int)MT_EXPR_MAX_LENGTH);
@@ -651,10 +723,7 @@ mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *con
     p.number_end = 0;
     p.depth = 0;
     p.length = 0;
-    p.lookup = lookup;
-    p.context = context;
-    p.names = names;
-    p.n_names = n_names;
+    p.scope = scope == NULL ? &nothing : scope;
     p.err = err;
     MT_TRY(parse_sum(&p));
     if (peek(&p) != '\0') {
@@ -688,7 +757,11 @@ bool mt_expr_is_constant(const mt_expr *e, double *value)
         }
         const int operands = mt_op_operands(c.op);
         double v = c.value;
-        if (operands == 1) {
+        if (c.op == MT_OP_INTERP) {
+            double at[3];
+            mt_interpolant_at(c.curve, stack[top - 1], at);
+            v = at[0];
+        } else if (operands == 1) {
             v = mt_op_value(c.op, stack[top - 1], 0.0);
         } else if (operands == 2) {
             v = mt_op_value(c.op, stack[top - 2], stack[top - 1]);

@@ -17,7 +17,8 @@
  *     number  = decimal digits with an optional point and exponent
  * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; hexadecimal, inf and
  * nan are not accepted. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos
- * atan sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for
+ * atan sinh cosh tanh abs; of two: atan2 min max hypot pow. interp(curve, sum) is the value of
+ * a curve, called by its name, with or without quotes ' or ". Angles in radians. x^0 = 1 for
  * every x; a negative base takes integer exponents only. Constants: pi, deg (pi/180), rpm
  * (1/60: "258*rpm" is a speed in Hz), mm, cm, inch and ft (in metres); e is not a constant. A
  * parameter name is [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved. The
@@ -45,6 +46,7 @@ typedef enum mt_op {
     MT_OP_COSH,
     MT_OP_TANH,
     MT_OP_ABS,
+    MT_OP_INTERP, /* of a curve; mt_op_value does not know it */
     MT_OP_ADD,
     MT_OP_SUB,
     MT_OP_MUL,
@@ -57,10 +59,15 @@ typedef enum mt_op {
     MT_OP_COUNT
 } mt_op;
 
+typedef struct mt_interpolant mt_interpolant; /* expr/interpolant.h */
+
 typedef struct mt_code {
     mt_op op;
     int param; /* MT_OP_PARAM: index of the parameter; MT_OP_CONST: its mt_kind (expr/kind.h) */
-    double value; /* MT_OP_CONST */
+    union {
+        double value;                /* MT_OP_CONST */
+        const mt_interpolant *curve; /* MT_OP_INTERP */
+    };
 } mt_code;
 
 /* One parsed expression: postfix code in an arena; immutable. */
@@ -72,16 +79,26 @@ typedef struct mt_expr {
 /* Finds a parameter by name (not NUL-terminated: length given); -1 where there is none. */
 typedef int (*mt_expr_lookup)(const void *context, const char *name, size_t length);
 
+/* What the names of an expression may be: parameters, which lookup (with context) finds (NULL:
+ * there are none), and curves. names[n_names] are suggested besides functions and constants;
+ * may be NULL. */
+typedef struct mt_expr_scope {
+    mt_expr_lookup lookup;
+    const void *context;
+    const char *const *names;
+    int n_names;
+    const mt_interpolant *curves;
+    int n_curves;
+} mt_expr_scope;
+
 /*
- * Parse NUL-terminated text into code in mem. lookup (with context) finds the parameters; NULL:
- * there are none. names[n_names] are suggested besides functions and constants; may be NULL.
- * Fails: MT_E_INPUT with location (characters from 1) and problem, "at character 7: unknown
- * name \"K_T9\"; did you mean \"K_T8\"?"; MT_E_MEMORY. *out is set on success only. O(length of
- * text).
+ * Parse NUL-terminated text into code in mem, which refers to the scope's curves. scope NULL:
+ * there are no names. Fails: MT_E_INPUT with location (characters from 1) and problem, "at
+ * character 7: unknown name \"K_T9\"; did you mean \"K_T8\"?"; MT_E_MEMORY. *out is set on
+ * success only. O(length of text).
  */
-mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
-                        const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
-                        mt_err *err);
+mt_status mt_expr_parse(const char *text, const mt_expr_scope *scope, mt_arena *mem,
+                        mt_expr *out, mt_err *err);
 /* An expression of one number. */
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err);
 /* True where the expression has no parameter; *value is then its value, which may be infinite

@@ -381,6 +381,7 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
         return mt_interval_of(fmax(a.lo, b.lo), fmax(a.hi, b.hi));
     case MT_OP_HYPOT:
         return widen_within(hypot(mig(a), mig(b)), hypot(mag(a), mag(b)), 0.0, HUGE_VAL);
+    case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:
@@ -519,6 +520,7 @@ mt_interval_partials mt_interval_op_partials(mt_op op, mt_interval a, mt_interva
         return (mt_interval_partials){cosine(a, v), cosine(b, v)};
     case MT_OP_MIN:
     case MT_OP_MAX:
+    case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:

@@ -38,7 +38,7 @@ mt_interval mt_interval_div(mt_interval a, mt_interval b);
 /* { x * x }: tighter than mt_interval_mul(a, a), whose factors are independent. */
 mt_interval mt_interval_square(mt_interval a);
 
-/* { op(x, y) }; b is ignored where op has one operand. */
+/* { op(x, y) }; b is ignored where op has one operand. The whole line for MT_OP_INTERP. */
 mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b);
 
 typedef struct mt_interval_partials {

@@ -26,7 +26,8 @@ static part made(mt_kind kind, double value, bool mixed, double bare)
 
 /* Rule for the kind of an operation's result. */
 typedef enum rule {
-    RULE_NUMBER, /* sin, exp, ln: a number, of whatever */
+    RULE_NUMBER,  /* sin, exp, ln: a number, of whatever */
+    RULE_UNKNOWN, /* interp */
     RULE_SAME,
     RULE_ROOT,
     RULE_ANGLE,
@@ -35,12 +36,12 @@ typedef enum rule {
     RULE_POWER
 } rule;
 static const rule rule_of[MT_OP_COUNT] = {
-    [MT_OP_NEG] = RULE_SAME,   [MT_OP_ABS] = RULE_SAME,    [MT_OP_SQRT] = RULE_ROOT,
-    [MT_OP_CBRT] = RULE_ROOT,  [MT_OP_ASIN] = RULE_ANGLE,  [MT_OP_ACOS] = RULE_ANGLE,
-    [MT_OP_ATAN] = RULE_ANGLE, [MT_OP_ATAN2] = RULE_ANGLE, [MT_OP_ADD] = RULE_SUM,
-    [MT_OP_SUB] = RULE_SUM,    [MT_OP_MIN] = RULE_SUM,     [MT_OP_MAX] = RULE_SUM,
-    [MT_OP_HYPOT] = RULE_SUM,  [MT_OP_MUL] = RULE_PRODUCT, [MT_OP_DIV] = RULE_PRODUCT,
-    [MT_OP_POW] = RULE_POWER,
+    [MT_OP_NEG] = RULE_SAME,   [MT_OP_ABS] = RULE_SAME,       [MT_OP_SQRT] = RULE_ROOT,
+    [MT_OP_CBRT] = RULE_ROOT,  [MT_OP_ASIN] = RULE_ANGLE,     [MT_OP_ACOS] = RULE_ANGLE,
+    [MT_OP_ATAN] = RULE_ANGLE, [MT_OP_ATAN2] = RULE_ANGLE,    [MT_OP_ADD] = RULE_SUM,
+    [MT_OP_SUB] = RULE_SUM,    [MT_OP_MIN] = RULE_SUM,        [MT_OP_MAX] = RULE_SUM,
+    [MT_OP_HYPOT] = RULE_SUM,  [MT_OP_MUL] = RULE_PRODUCT,    [MT_OP_DIV] = RULE_PRODUCT,
+    [MT_OP_POW] = RULE_POWER,  [MT_OP_INTERP] = RULE_UNKNOWN,
 };
 
 mt_kind mt_kind_of_dimension(mt_dimension dimension)
@@ -148,6 +149,8 @@ static part unary(mt_op op, const part *a)
         return made(MT_KIND_ANGLE, value, false, nan(""));
     case RULE_ROOT:
         return made(root_kind(op, a->kind), value, a->mixed, a->bare);
+    case RULE_UNKNOWN:
+        return made(MT_KIND_UNKNOWN, value, false, nan(""));
     case RULE_NUMBER:
     case RULE_SUM:
     case RULE_PRODUCT:
@@ -186,6 +189,7 @@ static part binary(mt_op op, const part *a, const part *b)
     case RULE_POWER:
         return power(op, a, b);
     case RULE_NUMBER:
+    case RULE_UNKNOWN:
     case RULE_SAME:
     case RULE_ROOT:
     case RULE_ANGLE: /* atan2, of two of one kind, whichever */
@@ -421,6 +425,8 @@ static powers unary_powers(mt_op op, const powers *a)
         return raised(a, 1.0 / 2.0);
     case MT_OP_CBRT:
         return raised(a, 1.0 / 3.0);
+    case MT_OP_INTERP:
+        return (powers){.known = false, .value = nan("")};
     default:
         return (powers){.known = true, .number = true, .value = nan("")};
     }

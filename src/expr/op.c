@@ -6,15 +6,16 @@
 const char *mt_op_name(mt_op op)
 {
     static const char *const names[MT_OP_COUNT] = {
-        [MT_OP_CONST] = "number", [MT_OP_PARAM] = "parameter", [MT_OP_NEG] = "-",
-        [MT_OP_SQRT] = "sqrt",    [MT_OP_CBRT] = "cbrt",       [MT_OP_EXP] = "exp",
-        [MT_OP_LN] = "ln",        [MT_OP_LOG10] = "log10",     [MT_OP_SIN] = "sin",
-        [MT_OP_COS] = "cos",      [MT_OP_TAN] = "tan",         [MT_OP_ASIN] = "asin",
-        [MT_OP_ACOS] = "acos",    [MT_OP_ATAN] = "atan",       [MT_OP_SINH] = "sinh",
-        [MT_OP_COSH] = "cosh",    [MT_OP_TANH] = "tanh",       [MT_OP_ABS] = "abs",
-        [MT_OP_ADD] = "+",        [MT_OP_SUB] = "-",           [MT_OP_MUL] = "*",
-        [MT_OP_DIV] = "/",        [MT_OP_POW] = "^",           [MT_OP_ATAN2] = "atan2",
-        [MT_OP_MIN] = "min",      [MT_OP_MAX] = "max",         [MT_OP_HYPOT] = "hypot",
+        [MT_OP_CONST] = "number",  [MT_OP_PARAM] = "parameter", [MT_OP_NEG] = "-",
+        [MT_OP_SQRT] = "sqrt",     [MT_OP_CBRT] = "cbrt",       [MT_OP_EXP] = "exp",
+        [MT_OP_LN] = "ln",         [MT_OP_LOG10] = "log10",     [MT_OP_SIN] = "sin",
+        [MT_OP_COS] = "cos",       [MT_OP_TAN] = "tan",         [MT_OP_ASIN] = "asin",
+        [MT_OP_ACOS] = "acos",     [MT_OP_ATAN] = "atan",       [MT_OP_SINH] = "sinh",
+        [MT_OP_COSH] = "cosh",     [MT_OP_TANH] = "tanh",       [MT_OP_ABS] = "abs",
+        [MT_OP_INTERP] = "interp", [MT_OP_ADD] = "+",           [MT_OP_SUB] = "-",
+        [MT_OP_MUL] = "*",         [MT_OP_DIV] = "/",           [MT_OP_POW] = "^",
+        [MT_OP_ATAN2] = "atan2",   [MT_OP_MIN] = "min",         [MT_OP_MAX] = "max",
+        [MT_OP_HYPOT] = "hypot",
     };
     return op < MT_OP_COUNT ? names[op] : "unknown";
 }
@@ -91,6 +92,7 @@ double mt_op_value(mt_op op, double a, double b)
         return b > a ? b : a;
     case MT_OP_HYPOT:
         return hypot(a, b);
+    case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:
@@ -200,6 +202,7 @@ mt_partials mt_op_partials(mt_op op, double a, double b, double v)
         return choice(b > a);
     case MT_OP_HYPOT:
         return (mt_partials){quotient(a, v), quotient(b, v)};
+    case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:

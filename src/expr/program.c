@@ -17,6 +17,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "expr/interpolant.h"
 #include "expr/interval.h"
 #include "expr/op.h"
 
@@ -100,18 +101,28 @@ static bool is_value(const mt_program *p, mt_node node, double value)
     return p->nodes[node].op == MT_OP_CONST && p->nodes[node].value == value;
 }
 
-static mt_node operation(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr addr)
+double mt_program_operate(const mt_program_node *n, double a, double b)
 {
-    const mt_program_node *const na = &p->nodes[a];
-    const mt_program_node *const nb = b == MT_NO_NODE ? na : &p->nodes[b];
+    if (n->op == MT_OP_INTERP) {
+        double at[3];
+        mt_interpolant_at(n->curve, a, at);
+        return at[0];
+    }
+    return mt_op_value(n->op, a, b);
+}
+
+/* n: a new node with its operands. */
+static mt_node operation(mt_program *p, const mt_program_node *n)
+{
+    const mt_program_node *const na = &p->nodes[n->a];
+    const mt_program_node *const nb = n->b == MT_NO_NODE ? na : &p->nodes[n->b];
     if (na->op == MT_OP_CONST && nb->op == MT_OP_CONST) {
-        const double value = mt_op_value(op, na->value, nb->value);
+        const double value = mt_program_operate(n, na->value, nb->value);
         if (isfinite(value)) {
             return mt_program_const(p, value);
         }
     }
-    const mt_program_node n = {.op = op, .a = a, .b = b, .input = -1, .addr = addr};
-    return intern(p, &n);
+    return intern(p, n);
 }
 
 mt_node mt_program_unary(mt_program *p, mt_op op, mt_node a, mt_addr addr)
@@ -122,7 +133,18 @@ mt_node mt_program_unary(mt_program *p, mt_op op, mt_node a, mt_addr addr)
     if (op == MT_OP_NEG && p->nodes[a].op == MT_OP_NEG) {
         return p->nodes[a].a;
     }
-    return operation(p, op, a, MT_NO_NODE, addr);
+    const mt_program_node n = {.op = op, .a = a, .b = MT_NO_NODE, .input = -1, .addr = addr};
+    return operation(p, &n);
+}
+
+mt_node mt_program_interp(mt_program *p, const mt_interpolant *curve, mt_node a, mt_addr addr)
+{
+    if (a == MT_NO_NODE) {
+        return MT_NO_NODE;
+    }
+    const mt_program_node n = {
+        .op = MT_OP_INTERP, .a = a, .b = MT_NO_NODE, .input = -1, .curve = curve, .addr = addr};
+    return operation(p, &n);
 }
 
 /* The node that op(a, b) simplifies to; MT_NO_NODE: it does not. */
@@ -164,7 +186,26 @@ mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr
         }
     }
     const mt_node simple = simplified(p, op, a, b);
-    return simple != MT_NO_NODE ? simple : operation(p, op, a, b, addr);
+    if (simple != MT_NO_NODE) {
+        return simple;
+    }
+    const mt_program_node n = {.op = op, .a = a, .b = b, .input = -1, .addr = addr};
+    return operation(p, &n);
+}
+
+mt_node mt_program_copy(mt_program *p, const mt_program_node *of, mt_node a, mt_node b)
+{
+    switch ((int)of->op) {
+    case MT_OP_CONST:
+        return mt_program_const(p, of->value);
+    case MT_OP_PARAM:
+        return mt_program_input(p, of->input, of->addr);
+    case MT_OP_INTERP:
+        return mt_program_interp(p, of->curve, a, of->addr);
+    default:
+        return of->b == MT_NO_NODE ? mt_program_unary(p, of->op, a, of->addr)
+                                   : mt_program_binary(p, of->op, a, b, of->addr);
+    }
 }
 
 mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr)
@@ -178,6 +219,8 @@ mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, 
         mt_node node = MT_NO_NODE;
         if (operands == 2) {
             node = mt_program_binary(p, c.op, stack[top - 2], stack[top - 1], addr);
+        } else if (c.op == MT_OP_INTERP) {
+            node = mt_program_interp(p, c.curve, stack[top - 1], addr);
         } else if (operands == 1) {
             node = mt_program_unary(p, c.op, stack[top - 1], addr);
         } else {
@@ -303,7 +346,18 @@ static double node_value(const mt_program_node *n, const double *inputs, const d
     if (n->op == MT_OP_PARAM) {
         return inputs[n->input];
     }
-    return mt_op_value(n->op, value[n->a], n->b == MT_NO_NODE ? 0.0 : value[n->b]);
+    return mt_program_operate(n, value[n->a], n->b == MT_NO_NODE ? 0.0 : value[n->b]);
+}
+
+/* Partial derivatives of an operation at (a, b), where its value is v. */
+static mt_partials node_partials(const mt_program_node *n, double a, double b, double v)
+{
+    if (n->op == MT_OP_INTERP) {
+        double at[3];
+        mt_interpolant_at(n->curve, a, at);
+        return (mt_partials){at[1], 0.0};
+    }
+    return mt_op_partials(n->op, a, b, v);
 }
 
 /* "sqrt(-3) has no finite value", "1 / 0 has no finite derivative" */
@@ -317,6 +371,12 @@ static mt_status fail_at(const mt_program *p, mt_node node, const double *value,
     }
     if (n->a == MT_NO_NODE) {
         return mt_fail(err, MT_E_DOMAIN, "a %s has no finite %s", name, what);
+    }
+    if (n->op == MT_OP_INTERP) {
+        const mt_interpolant *const curve = n->curve;
+        return mt_fail(err, MT_E_DOMAIN,
+                       "%.6g is outside of the curve \"%s\", whose x goes from %.6g to %.6g",
+                       value[n->a], curve->name, curve->x[0], curve->x[curve->n - 1]);
     }
     if (n->b == MT_NO_NODE) {
         return mt_fail(err, MT_E_DOMAIN, "%s(%.6g) has no finite %s", name, value[n->a], what);
@@ -339,6 +399,20 @@ mt_status mt_program_eval(const mt_program *p, const double *inputs, double *val
         }
     }
     return MT_OK;
+}
+
+bool mt_program_values(const mt_program *p, const double *inputs, double *value)
+{
+    bool whole = true;
+    for (int i = 0; i < p->count; i++) {
+        const mt_program_node *const n = &p->nodes[i];
+        const bool known = (n->a == MT_NO_NODE || isfinite(value[n->a])) &&
+                           (n->b == MT_NO_NODE || isfinite(value[n->b]));
+        const double v = known ? node_value(n, inputs, value) : nan("");
+        value[i] = isfinite(v) ? v : nan("");
+        whole = whole && isfinite(v);
+    }
+    return whole;
 }
 
 /* row += d * the gradient of an operand, within its span; false: not finite. */
@@ -369,7 +443,7 @@ static bool node_gradient(const mt_program *p, int i, const double *value, doubl
         return true;
     }
     const double b = n->b == MT_NO_NODE ? 0.0 : value[n->b];
-    const mt_partials d = mt_op_partials(n->op, value[n->a], b, value[i]);
+    const mt_partials d = node_partials(n, value[n->a], b, value[i]);
     const bool first = !p->active[n->a] || add_operand(p, n->a, d.a, grad, row);
     const bool second =
         n->b == MT_NO_NODE || !p->active[n->b] || add_operand(p, n->b, d.b, grad, row);
@@ -430,6 +504,12 @@ static mt_interval node_interval(const mt_program *p, int i, const double *lower
     if (n->op == MT_OP_MUL && n->a == n->b) {
         return mt_interval_square(a);
     }
+    if (n->op == MT_OP_INTERP) {
+        mt_interval values;
+        mt_interval slopes;
+        mt_interpolant_enclose(n->curve, a, &values, &slopes);
+        return values;
+    }
     const mt_interval b = n->b == MT_NO_NODE ? a : (mt_interval){lo[n->b], hi[n->b]};
     return mt_interval_op(n->op, a, b);
 }
@@ -463,6 +543,18 @@ static bool is_zero(mt_interval a)
     return a.lo == 0.0 && a.hi == 0.0;
 }
 
+static mt_interval_partials interval_partials(const mt_program_node *n, mt_interval a,
+                                              mt_interval b, mt_interval v)
+{
+    if (n->op == MT_OP_INTERP) {
+        mt_interval values;
+        mt_interval_partials d = {.b = {0.0, 0.0}};
+        mt_interpolant_enclose(n->curve, a, &values, &d.a);
+        return d;
+    }
+    return mt_interval_op_partials(n->op, a, b, v);
+}
+
 /* Derivatives of one node with two operands (or one, doubled with a zero partial). */
 static void node_derivatives(const mt_program *p, int i, const double *lo, const double *hi,
                              double *dlo, double *dhi)
@@ -474,7 +566,7 @@ static void node_derivatives(const mt_program *p, int i, const double *lo, const
     const mt_interval v = {lo[i], hi[i]};
     const bool chooses = n->op == MT_OP_MIN || n->op == MT_OP_MAX;
     const choice c = chooses ? chosen(n->op, a, b) : CHOICE_FIRST;
-    const mt_interval_partials d = mt_interval_op_partials(n->op, a, b, v);
+    const mt_interval_partials d = interval_partials(n, a, b, v);
     const bool b_active = n->b != MT_NO_NODE && p->active[n->b];
     const size_t inputs = (size_t)p->n_inputs;
     const size_t row = (size_t)i * inputs;
@@ -585,10 +677,15 @@ static double of_one(mt_op op, double a, double v)
     }
 }
 
-static curvatures curvatures_of(mt_op op, double a, double b, double v)
+static curvatures curvatures_of(const mt_program_node *n, double a, double b, double v)
 {
-    return mt_op_operands(op) == 2 ? of_two(op, a, b, v)
-                                   : (curvatures){of_one(op, a, v), 0.0, 0.0};
+    if (n->op == MT_OP_INTERP) {
+        double at[3];
+        mt_interpolant_at(n->curve, a, at);
+        return (curvatures){at[2], 0.0, 0.0};
+    }
+    return mt_op_operands(n->op) == 2 ? of_two(n->op, a, b, v)
+                                      : (curvatures){of_one(n->op, a, v), 0.0, 0.0};
 }
 
 /* Product in which 0 times a value that is not finite is 0: a constant operand needs no
@@ -601,9 +698,9 @@ static double times(double slope, double by)
 static void node_second(const mt_program_node *n, const double *a, const double *b,
                         double out[3])
 {
-    const double v = mt_op_value(n->op, a[0], b[0]);
-    const mt_partials d = mt_op_partials(n->op, a[0], b[0], v);
-    const curvatures c = curvatures_of(n->op, a[0], b[0], v);
+    const double v = mt_program_operate(n, a[0], b[0]);
+    const mt_partials d = node_partials(n, a[0], b[0], v);
+    const curvatures c = curvatures_of(n, a[0], b[0], v);
     out[0] = v;
     out[1] = times(d.a, a[1]) + times(d.b, b[1]);
     out[2] = times(d.a, a[2]) + times(d.b, b[2]) + times(c.aa, a[1] * a[1]) +

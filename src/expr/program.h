@@ -26,8 +26,11 @@ typedef struct mt_program_node {
     mt_op op;
     mt_node a; /* operands; MT_NO_NODE: none */
     mt_node b;
-    int input;    /* MT_OP_PARAM */
-    double value; /* MT_OP_CONST */
+    int input; /* MT_OP_PARAM */
+    union {
+        double value;                /* MT_OP_CONST */
+        const mt_interpolant *curve; /* MT_OP_INTERP */
+    };
     mt_addr addr; /* address of its number in the input file, for messages */
 } mt_program_node;
 
@@ -57,6 +60,9 @@ mt_node mt_program_const(mt_program *p, double value);
 mt_node mt_program_input(mt_program *p, int input, mt_addr addr);
 mt_node mt_program_unary(mt_program *p, mt_op op, mt_node a, mt_addr addr);
 mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr addr);
+mt_node mt_program_interp(mt_program *p, const mt_interpolant *curve, mt_node a, mt_addr addr);
+/* A copy of a node of another program, with operands a and b (MT_NO_NODE: it has none) here. */
+mt_node mt_program_copy(mt_program *p, const mt_program_node *of, mt_node a, mt_node b);
 /* Add a parsed expression; its parameter i is node params[i]. */
 mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr);
 /* Shorthands without address, for sums made by the mechanics. */
@@ -67,6 +73,8 @@ mt_node mt_program_div(mt_program *p, mt_node a, mt_node b);
 /* Finish the program. Fails MT_E_MEMORY. */
 mt_status mt_program_finish(mt_program *p, mt_err *err);
 
+/* Value of an operation with operands of these values (b is ignored where it has one). */
+double mt_program_operate(const mt_program_node *n, double a, double b);
 /* True where the node depends on no input. Only after finish. */
 bool mt_program_is_constant(const mt_program *p, mt_node node);
 /* depends[i]: the node depends on input i (structurally); [n_inputs]. */
@@ -82,6 +90,9 @@ bool mt_program_has_input(const uint64_t *set, int input);
  * its addr the location in the input file, and the values before it are valid. */
 mt_status mt_program_eval(const mt_program *p, const double *inputs, double *value,
                           mt_node *bad, mt_err *err);
+/* As mt_program_eval, but goes on behind a node without a finite value: it, and what depends on
+ * it, is NaN. True where all are finite. */
+bool mt_program_values(const mt_program *p, const double *inputs, double *value);
 /* Values and gradient: grad[node * n_inputs + i] = d value[node] / d inputs[i], [count *
  * n_inputs]. Kinks as in mt_op_partials: abs'(0) = 1, min(x, x) and max(x, x) follow the first
  * operand. A constant exponent needs no logarithm: x^2 has a derivative for every x. O(count *

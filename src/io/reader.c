@@ -493,13 +493,17 @@ static bool says_percent(mt_reader *r, mt_addr value, const char *text)
 bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out)
 {
     mt_err err = {MT_OK, ""};
-    const int n_names = mt_diag_may_suggest(r->diags) ? r->n_names : 0;
+    const mt_expr_scope scope = {.lookup = r->lookup,
+                                 .context = r->context,
+                                 .names = r->names,
+                                 .n_names = mt_diag_may_suggest(r->diags) ? r->n_names : 0,
+                                 .curves = r->curves,
+                                 .n_curves = r->n_curves};
     if (says_percent(r, addr, text)) {
         *out = (mt_expr){0};
         return false;
     }
-    const mt_status rc =
-        mt_expr_parse(text, r->lookup, r->context, r->names, n_names, r->mem, out, &err);
+    const mt_status rc = mt_expr_parse(text, &scope, r->mem, out, &err);
     if (rc == MT_OK) {
         return true;
     }

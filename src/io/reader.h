@@ -37,6 +37,8 @@ typedef struct mt_reader {
     const void *context;
     const char *const *names; /* candidates for "did you mean" in expressions */
     int n_names;
+    const mt_interpolant *curves; /* of expressions */
+    int n_curves;
     mt_kind_lookup kinds; /* kinds of the parameters, with the context of lookup */
     mt_matched matched[MT_MATCHED];
     unsigned n_matched;            /* number matched so far; the last ones are kept */

@@ -66,7 +66,7 @@ static const double *values_so_far(const mt_program *p, known *k)
         } else if (n->op == MT_OP_PARAM) {
             v[k->count] = k->at[n->input];
         } else {
-            v[k->count] = mt_op_value(n->op, v[n->a], n->b == MT_NO_NODE ? 0.0 : v[n->b]);
+            v[k->count] = mt_program_operate(n, v[n->a], n->b == MT_NO_NODE ? 0.0 : v[n->b]);
         }
     }
     return k->value;
@@ -1044,7 +1044,15 @@ static mt_status settle_by_numbers(mt_system *sys, const double *at, mt_err *err
     const mt_arena_mark mark = mt_arena_get_mark(&sys->mem);
     double *const v = mt_arena_f64(&sys->mem, (size_t)sys->program.count, 1);
     MT_TRY(mt_arena_check(&sys->mem, err));
-    MT_TRY(mt_program_eval(&sys->program, at, v, &bad, err));
+    const mt_status rc = mt_program_eval(&sys->program, at, v, &bad, err);
+    if (rc != MT_OK) {
+        const mt_addr addr = bad == MT_NO_NODE ? MT_NO_ADDR : sys->program.nodes[bad].addr;
+        int line = 0;
+        int column = 0;
+        return mt_model_locate(sys->model, addr, &line, &column)
+                   ? mt_err_in(err, rc, "line %d, column %d", line, column)
+                   : rc;
+    }
     MT_TRY(choose_helpers(sys, v, err));
     for (int i = 0; i < sys->n_measures; i++) {
         for (int side = 0; side < 2; side++) {

@@ -336,7 +336,8 @@ static bool same_number(const mt_model *m, mt_num a, mt_num b)
         const mt_code *const p = &x->code[i];
         const mt_code *const q = &y->code[i];
         same = p->op == q->op && (p->op != MT_OP_PARAM || p->param == q->param) &&
-               (p->op != MT_OP_CONST || !(p->value < q->value || p->value > q->value));
+               (p->op != MT_OP_CONST || !(p->value < q->value || p->value > q->value)) &&
+               (p->op != MT_OP_INTERP || p->curve == q->curve);
     }
     return same;
 }

@@ -111,10 +111,12 @@ void mt_item_position(mt_reader *r, const mt_key *key, mt_addr value, void *item
 void mt_item_at(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_names(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_presence(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_read_curves(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_read_parameters(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 
 extern const mt_key_table mt_model_keys;
 extern const mt_key_table mt_parameter_keys;
+extern const mt_key_table mt_curve_keys;
 extern const mt_key_table mt_body_keys;
 extern const mt_key_table mt_link_keys;
 extern const mt_key_table mt_section_keys;

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters and their units, what the names of units say and what their uses do; and circles
- * of parameters. */
+/* Parameters and their units, what the names of units say and what their uses do; circles of
+ * parameters; and curves that expressions read. */
+#include <math.h>
 #include <string.h>
 
 #include "base/format.h"
+#include "expr/interpolant.h"
 #include "expr/kind.h"
 #include "expr/units.h"
 #include "io/reader.h"
@@ -92,16 +94,14 @@ static void set_unit(mt_parameter *p, const mt_unit *unit, const char *name)
     p->unit = other ? unit->si : name;
 }
 
-static void read_unit(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+/* The unit of the list that the text at a value names; NULL: none (noted). */
+static const char *known_unit(mt_reader *r, mt_addr value)
 {
-    mt_parameter *const p = item;
-    (void)key;
     char hint[HINT_TEXT];
     const char *const text = mt_json_string(r->doc, value);
     for (int i = 0; i < MT_COUNT(UNITS); i++) {
         if (strcmp(UNITS[i], text) == 0) {
-            set_unit(p, mt_unit_find(text), UNITS[i]);
-            return;
+            return UNITS[i];
         }
     }
     if (name_of_unit(text, hint)) {
@@ -115,6 +115,16 @@ static void read_unit(mt_reader *r, const mt_key *key, mt_addr value, void *item
                           near == NULL ? " (\"modetune schema model\" has all)"
                                        : "; did you mean \"",
                           near == NULL ? "" : near, near == NULL ? "" : "\"?");
+    }
+    return NULL;
+}
+
+static void read_unit(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    const char *const name = known_unit(r, value);
+    (void)key;
+    if (name != NULL) {
+        set_unit(item, mt_unit_find(name), name);
     }
 }
 
@@ -160,6 +170,125 @@ static void read_parameter(mt_reader *r, mt_addr value, mt_parameter *p)
     } else {
         p->value = mt_read_num(mt_model_reader_of(r), value, MT_POSSIBLE_NONE, NULL);
     }
+}
+
+/* Curves: points as they stand in the file, and their units (NULL: of SI). */
+typedef struct curve_points {
+    double *x;
+    double *y;
+    int n_x;
+    int n_y;
+    const mt_unit *x_unit;
+    const mt_unit *y_unit;
+} curve_points;
+
+static void read_curve_numbers(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    int *const n = (int *)(void *)((char *)item + key->other);
+    mt_items items = mt_reader_items(r, value);
+    double *const room = mt_reader_room(r, &items, sizeof *room);
+    if (items.count < 2 || items.count > MT_INTERPOLANT_MOST) {
+        mt_diag_structure(r->diags, value, "a curve has 2 to %d points, not %d",
+                          (int)MT_INTERPOLANT_MOST, items.count);
+        return;
+    }
+    while (mt_items_next(&items)) {
+        const bool number = mt_reader_type(r, items.at, MT_KEY_VALUE);
+        room[(*n)++] = number ? mt_json_number(r->doc, items.at) : nan("");
+    }
+    memcpy((char *)item + key->at, &room, sizeof room);
+}
+
+static void read_curve_unit(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    const char *const name = known_unit(r, value);
+    const mt_unit *const unit = name == NULL ? NULL : mt_unit_find(name);
+    memcpy((char *)item + key->at, &unit, sizeof unit);
+}
+
+/* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
+#define CURVE_UNIT(label, m, ...)                                                           \
+    {                                                                                       \
+        .name = (label), .type = MT_KEY_TEXT, MT_M_TO(read_curve_unit, const mt_unit *, m), \
+        .choices = UNITS, .n_choices = MT_COUNT(UNITS), .says = __VA_ARGS__                 \
+    }
+#define CURVE_NUMBERS(label, m, ...)                                               \
+    {                                                                              \
+        .name = (label), .type = MT_KEY_NUMBERS, .required = true, MT_M_ROW(ANY),  \
+        MT_M_TO(read_curve_numbers, double *, m), .other = MT_M_PLACE(int, n_##m), \
+        .says = __VA_ARGS__, .schema = MT_CURVE_SCHEMA                             \
+    }
+/* NOLINTEND(bugprone-macro-parentheses) */
+#define MT_CURVE_SCHEMA                                           \
+    "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 10000, " \
+    "\"items\": {\"type\": \"number\"}"
+
+#define THIS curve_points
+static const mt_key CURVE[] = {
+    CURVE_NUMBERS("x", x, "Where its points are, ascending.", .examples = "[[0, 0.01, 0.02]]"),
+    CURVE_NUMBERS("y", y, "Its values there, as many.", .examples = "[[0, 120, 310]]"),
+    CURVE_UNIT("x_unit", x_unit,
+               "Unit of its x, which are converted to SI, as expressions are. Absent: SI."),
+    CURVE_UNIT("y_unit", y_unit, "Unit of its y. Absent: SI."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_curve_keys = {
+    .what = "curve",
+    .keys = CURVE,
+    .n = MT_COUNT(CURVE),
+    .says = "A measured curve, which expressions read as interp(name, x): smooth through its "
+            "points, without rises or falls that they do not have (Steffen's monotone cubics). "
+            "Outside of its points it has no value."};
+
+/* Its numbers in SI; false: they are no curve (noted). */
+static bool settle_curve(mt_reader *r, mt_addr value, curve_points *points)
+{
+    if (points->n_x == 0 || points->n_y == 0) {
+        return false;
+    }
+    if (points->n_x != points->n_y) {
+        mt_diag_error(r->diags, value, "a curve has as many x as y, not %d and %d", points->n_x,
+                      points->n_y);
+        return false;
+    }
+    for (int i = 0; i < points->n_x; i++) {
+        if (isnan(points->x[i]) || isnan(points->y[i])) {
+            return false; /* noted */
+        }
+        points->x[i] = mt_unit_to_si(points->x_unit, points->x[i]);
+        points->y[i] = mt_unit_to_si(points->y_unit, points->y[i]);
+        if (i > 0 && !(points->x[i] > points->x[i - 1])) {
+            mt_diag_error(r->diags, value, "the x of a curve ascend: number %d is not above %d",
+                          i + 1, i);
+            return false;
+        }
+    }
+    return true;
+}
+
+void mt_read_curves(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_model *const m = item;
+    mt_items items = mt_reader_items(r, value);
+    (void)key;
+    m->curves = mt_reader_room(r, &items, sizeof *m->curves);
+    while (mt_items_next(&items)) {
+        curve_points points = {0};
+        mt_err err = {MT_OK, ""};
+        mt_interpolant *const curve = &m->curves[m->n_curves++];
+        curve->name = mt_reader_member_name(r, items.at, MT_NAME_PARAMETER).s;
+        if (mt_members_read(r, items.at, &mt_curve_keys, &points) &&
+            settle_curve(r, items.at, &points) &&
+            mt_interpolant_init(curve, curve->name, points.n_x, points.x, points.y, &m->mem,
+                                &err) == MT_E_INPUT) {
+            mt_diag_error(r->diags, items.at, "%s", err.text);
+        }
+    }
+    m->cap_curves = m->n_curves;
+    r->curves = m->curves;
+    r->n_curves = m->n_curves;
 }
 
 static mt_kind kind_of_parameter(const mt_model *m, const mt_parameter *p)

@@ -456,6 +456,35 @@ static void locate_item_member(mt_lint *j, mt_warning *warning, const mt_item *i
     (void)mt_lint_addr(j, warning, j->model->nums[num].addr, pointer);
 }
 
+/* Why a number has no value, as "sqrt(-3) has no finite value", in the list's memory; NULL: it
+ * has one, or a parameter in it has none, which is told there. */
+static const char *why_no_value(const mt_lint *j, mt_num num)
+{
+    const mt_model *const m = j->model;
+    mt_arena *const mem = j->out->mem;
+    if (num == MT_ABSENT || !isnan(j->value[num])) {
+        return NULL;
+    }
+    double *const values = mt_arena_f64(mem, (size_t)m->n_parameters, 1);
+    if (values == NULL) {
+        return NULL;
+    }
+    for (int i = 0; i < m->n_parameters; i++) {
+        values[i] = value_of_number(j, number_of_parameter(j, i));
+    }
+    const mt_expr *const e = &m->nums[num].expr;
+    for (int i = 0; i < e->length; i++) {
+        if (e->code[i].op == MT_OP_PARAM && isnan(values[e->code[i].param])) {
+            return NULL;
+        }
+    }
+    double value = 0.0;
+    mt_err err = {MT_OK, ""};
+    return mt_model_expr_value(m, values, e, mem, &value, &err) == MT_E_DOMAIN
+               ? mt_arena_printf(mem, "%s", err.text)
+               : NULL;
+}
+
 static void fault(mt_lint *j, const mt_item *item, mt_num num, const char *member,
                   const char *why)
 {
@@ -668,11 +697,29 @@ static void lint_drive(mt_lint *j)
         j->model->nums[c->drive.position].addr, mt_lint_drive_pointer(j, "position_rad"));
 }
 
-void mt_model_lint(const mt_model *model, int configuration, const double *value,
+static void lint_parameters(mt_lint *j)
+{
+    for (int i = 0; i < j->model->n_parameters; i++) {
+        const mt_num num = number_of_parameter(j, i);
+        const char *const why = why_no_value(j, num);
+        if (why != NULL) {
+            (void)mt_lint_addr(j,
+                               mt_warning_add(j->out, MT_LEVEL_FAULT, "value",
+                                              "parameter \"%s\": %s",
+                                              j->model->parameters[i].name.s, why),
+                               j->model->nums[num].addr, NULL);
+        }
+    }
+}
+
+void mt_model_lint(const mt_model *model, int configuration, const double *value, bool whole,
                    mt_warning_list *out)
 {
     mt_lint j = {.model = model, .configuration = configuration, .value = value, .out = out};
     const int first = out->n;
+    if (whole) {
+        lint_parameters(&j);
+    }
     lint_bodies(&j);
     lint_links(&j);
     lint_springs(&j);
@@ -704,8 +751,8 @@ mt_status mt_model_admit_numbers(const mt_model *model, int configuration,
     double *const value = mt_arena_f64(mem, (size_t)model->n_nums, 1);
     mt_warning_list list = mt_warning_list_default(mem);
     MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(mt_numbers_at(numbers, at, value, NULL, err));
-    mt_model_lint(model, configuration, value, &list);
+    mt_numbers_at(numbers, at, value, NULL);
+    mt_model_lint(model, configuration, value, true, &list);
     for (int i = 0; i < list.n; i++) {
         if (list.items[i].level == MT_LEVEL_FAULT) {
             return mt_fail(err, MT_E_USAGE, "%s", list.items[i].text);

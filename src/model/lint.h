@@ -12,8 +12,10 @@
  * names item and member, has its JSON pointer and, where the model was read from a file, its
  * location.
  * @param[in]  value  [n_nums] as mt_model_numbers gives them
+ * @param[in]  whole  a parameter without a finite value is a fault, too, with the reason
+ *   ("sqrt(-3) has no finite value"); false: not of this design, one between bounds
  */
-void mt_model_lint(const mt_model *model, int configuration, const double *value,
+void mt_model_lint(const mt_model *model, int configuration, const double *value, bool whole,
                    mt_warning_list *out);
 
 /* A sentence in mem on what the model of this kind of link neglects, part of every result;

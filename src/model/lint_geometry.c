@@ -164,11 +164,15 @@ static bool needs_drawn_length(const mt_lint *j, const mt_spring *s)
            s->free_length == MT_ABSENT;
 }
 
+/* The largest component; NaN where one has no value. */
 static double direction_of_axis(const mt_lint *j, const mt_num axis[3], double x[3])
 {
     double largest = 0.0;
     for (int k = 0; k < AXES; k++) {
         x[k] = axis[k] == MT_ABSENT ? 0.0 : j->value[axis[k]];
+        if (isnan(x[k])) {
+            return x[k];
+        }
         largest = fmax(largest, fabs(x[k]));
     }
     for (int k = 0; k < AXES && largest > 0.0; k++) {
@@ -202,7 +206,7 @@ static void lint_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
     if (second == 0.0) {
         fault_axis(j, item, joint->axis_b, joint->name.addr, "axis_b", NO_LENGTH);
     }
-    if (!joint->has_axis || !joint->has_axis_b || first == 0.0 || second == 0.0) {
+    if (!joint->has_axis || !joint->has_axis_b || !(first > 0.0) || !(second > 0.0)) {
         return;
     }
     double across = 0.0;

@@ -389,8 +389,9 @@ typedef struct mt_model {
     int dimension; /* 2 or 3 */
     bool has_gravity;
     mt_vector gravity;
-    mt_damping damping;   /* of configurations that have none of their own */
-    mt_accepted accepted; /* warnings that the author of the model accepts */
+    mt_damping damping;                 /* of configurations that have none of their own */
+    mt_accepted accepted;               /* warnings that the author of the model accepts */
+    MT_LIST_OF(mt_interpolant, curves); /* of interp() in expressions */
     MT_LIST_OF(mt_number, nums);
     MT_LIST_OF(mt_parameter, parameters);
     MT_LIST_OF(mt_point, points);
@@ -419,7 +420,7 @@ void mt_model_delete(mt_model *model);
 /* Add a number; returns its index, MT_ABSENT when out of memory (mt_model_resolve then
  * fails). */
 mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr);
-/* Lookup function for mt_expr_parse over model->parameters (context: the model). */
+/* Lookup function of mt_expr_scope over model->parameters (context: the model). */
 int mt_model_lookup(const void *model, const char *name, size_t length);
 
 /* Index by name; MT_ABSENT: none */

@@ -64,7 +64,7 @@ static void resolve_values(mt_resolve *f)
             }
             ok = mt_model_numbers(m, c, 0, NULL, NULL, &texts, value, NULL) == MT_OK;
             if (ok) {
-                mt_model_lint(m, c, value, &list);
+                mt_model_lint(m, c, value, true, &list);
             }
             for (int i = first; i < list.n && ok; i++) {
                 if (!is_told(&list, i, &list.items[i])) {
@@ -385,6 +385,10 @@ static const mt_key MODEL[] = {
                 "Acceleration of gravity in all configurations that do not give their own "
                 "[m/s^2]. Absent: none.",
                 .examples = "[[0, -9.81]]"),
+    MT_M_JUST("curves", OBJECT, false, NONE,
+              "Measured curves by name, which expressions read: \"interp(rubber, x)\".",
+              .schema = MT_I_BY_NAME(MT_I_NAMES_WORD, MT_I_OF("curve")),
+              .read = mt_read_curves),
     MT_M_JUST("parameters", OBJECT, false, ANY,
               "Named numbers that expressions may use and studies may change.",
               .schema = MT_I_BY_NAME(MT_I_NAMES_WORD,
@@ -433,9 +437,11 @@ const mt_schema_type *mt_model_types(int *n)
 {
     static const mt_schema_type types[] = {
         {.name = "number",
-         .says = "A number in the unit that the member names, else the file's or the "
-                 "parameter's, else SI; or an expression of the parameters as a string, in SI "
-                 "units: + - * / ^, sqrt, sin, min ..., pi, deg, rpm, mm, cm, inch, ft.",
+         .says =
+             "A number in the unit that the member names, else the file's or the "
+             "parameter's, else SI; or an expression of the parameters as a string, in SI "
+             "units: + - * / ^, sqrt, sin, min ..., interp(curve, x), pi, deg, rpm, mm, cm, "
+             "inch, ft.",
          .schema = "\"type\": [\"number\", \"string\"], \"examples\": [0.25, \"2*m\", "
                    "\"10*deg\", \"150*mm\"]"},
         {.name = "vector",
@@ -463,11 +469,12 @@ const mt_schema_type *mt_model_types(int *n)
 const mt_key_table *const *mt_model_key_tables(int *n)
 {
     static const mt_key_table *const tables[] = {
-        &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,  &mt_link_keys,
-        &mt_section_keys, &mt_shear_keys,     &mt_joint_keys, &mt_spring_keys,
-        &mt_damper_keys,  &mt_sensor_keys,    &mt_mode_keys,  &mt_configuration_keys,
-        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,  &units_keys,
-        &mt_damping_keys,
+        &mt_model_keys,         &mt_curve_keys,  &mt_parameter_keys,
+        &mt_body_keys,          &mt_link_keys,   &mt_section_keys,
+        &mt_shear_keys,         &mt_joint_keys,  &mt_spring_keys,
+        &mt_damper_keys,        &mt_sensor_keys, &mt_mode_keys,
+        &mt_configuration_keys, &mt_drive_keys,  &mt_hold_keys,
+        &mt_load_keys,          &units_keys,     &mt_damping_keys,
     };
     *n = MT_COUNT(tables);
     return tables;
@@ -477,7 +484,7 @@ const mt_key_table *const *mt_model_key_tables(int *n)
  * stand before what is at them in the table. */
 static void read_model_root(mt_model_reader *mr, mt_object *root)
 {
-    static const char *const first[] = {"dimension", "units", "parameters"};
+    static const char *const first[] = {"dimension", "units", "curves", "parameters"};
     for (int i = 0; i < MT_COUNT(first); i++) {
         mt_object_read_first(&mr->r, root, first[i], mr->m);
     }

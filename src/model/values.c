@@ -126,24 +126,15 @@ mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
     return mt_arena_check(mem, err);
 }
 
-mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
-                        mt_err *err)
+void mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole)
 {
-    const mt_program *const program = &numbers->program;
-    mt_node bad = program->count;
-    mt_err ignored = {.code = MT_OK}; /* who evaluates the model says what has no value */
-    const mt_status rc = mt_program_eval(program, at, numbers->all, &bad, &ignored);
-    if (rc != MT_OK && rc != MT_E_DOMAIN) {
-        return mt_fail(err, rc, "%s", ignored.text);
-    }
+    const bool all = mt_program_values(&numbers->program, at, numbers->all);
     for (int i = 0; i < numbers->n; i++) {
-        const mt_node node = numbers->nodes[i];
-        value[i] = rc == MT_OK || node < bad ? numbers->all[node] : nan("");
+        value[i] = numbers->all[numbers->nodes[i]];
     }
     if (whole != NULL) {
-        *whole = rc == MT_OK;
+        *whole = all;
     }
-    return MT_OK;
 }
 
 /* NOLINTNEXTLINE(readability-function-size) */
@@ -157,9 +148,11 @@ mt_status mt_model_number(const mt_model *model, int configuration, int n_inputs
     }
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     mt_numbers numbers;
-    mt_status rc = mt_numbers_new(model, configuration, n_inputs, inputs, 1,
-                                  &model->nums[number], mem, &numbers, err);
-    rc = rc == MT_OK ? mt_numbers_at(&numbers, at, value, NULL, err) : rc;
+    const mt_status rc = mt_numbers_new(model, configuration, n_inputs, inputs, 1,
+                                        &model->nums[number], mem, &numbers, err);
+    if (rc == MT_OK) {
+        mt_numbers_at(&numbers, at, value, NULL);
+    }
     mt_arena_rewind(mem, mark);
     return rc;
 }
@@ -170,9 +163,11 @@ mt_status mt_model_numbers(const mt_model *model, int configuration, int n_input
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     mt_numbers numbers;
-    mt_status rc = mt_numbers_new(model, configuration, n_inputs, inputs, model->n_nums,
-                                  model->nums, mem, &numbers, err);
-    rc = rc == MT_OK ? mt_numbers_at(&numbers, at, value, NULL, err) : rc;
+    const mt_status rc = mt_numbers_new(model, configuration, n_inputs, inputs, model->n_nums,
+                                        model->nums, mem, &numbers, err);
+    if (rc == MT_OK) {
+        mt_numbers_at(&numbers, at, value, NULL);
+    }
     mt_arena_rewind(mem, mark);
     return rc;
 }
@@ -263,8 +258,8 @@ static mt_status expr_value(const mt_model *model, const double *values, const m
 mt_status mt_model_expr_value(const mt_model *model, const double *values, const mt_expr *e,
                               mt_arena *mem, double *out, mt_err *err)
 {
-    if (mt_expr_is_constant(e, out)) {
-        return isfinite(*out) ? MT_OK : mt_fail(err, MT_E_DOMAIN, "the value is not finite");
+    if (mt_expr_is_constant(e, out) && isfinite(*out)) {
+        return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     const mt_status rc = expr_value(model, values, e, mem, out, err);
@@ -296,8 +291,13 @@ mt_status mt_model_read_typed(const mt_typing *with, const char *text, const mt_
     const mt_model *const m = with->model;
     char complaint[MT_KIND_TEXT];
     mt_expr e;
-    MT_TRY(mt_expr_parse(text, mt_model_lookup, m, with->names, m->n_parameters, with->mem, &e,
-                         err));
+    const mt_expr_scope scope = {.lookup = mt_model_lookup,
+                                 .context = m,
+                                 .names = with->names,
+                                 .n_names = m->n_parameters,
+                                 .curves = m->curves,
+                                 .n_curves = m->n_curves};
+    MT_TRY(mt_expr_parse(text, &scope, with->mem, &e, err));
     if (!is_bare(&e) &&
         mt_kind_complaint(&e, judged, mt_model_kind, m, complaint, sizeof complaint)) {
         return mt_fail(err, MT_E_USAGE, "%s", complaint);

@@ -68,13 +68,10 @@ mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
                          mt_numbers *out, mt_err *err);
 /**
  * @param[in]  at     [n_inputs]
- * @param[out] value  [n]; NaN where a number is not finite, or is evaluated after one that is
- *                    not
+ * @param[out] value  [n]; NaN where a number, or one that it depends on, is not finite
  * @param[out] whole  may be NULL; true: all numbers and all parameters are finite
- * Fails: MT_E_INTERNAL.
  */
-mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
-                        mt_err *err);
+void mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole);
 
 /* mt_numbers_new and mt_numbers_at for one design and one number of the model; MT_ABSENT: 0.
  * Constant numbers cost nothing. NaN: not finite. Scratch from mem is returned. Fails:

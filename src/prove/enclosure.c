@@ -395,15 +395,8 @@ static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)
         if (map[i] == 0) {
             continue;
         }
-        if (n->op == MT_OP_CONST) {
-            map[i] = mt_program_const(&e->program, n->value);
-        } else if (n->op == MT_OP_PARAM) {
-            map[i] = mt_program_input(&e->program, n->input, n->addr);
-        } else if (n->b == MT_NO_NODE) {
-            map[i] = mt_program_unary(&e->program, n->op, map[n->a], n->addr);
-        } else {
-            map[i] = mt_program_binary(&e->program, n->op, map[n->a], map[n->b], n->addr);
-        }
+        map[i] = mt_program_copy(&e->program, n, n->a == MT_NO_NODE ? MT_NO_NODE : map[n->a],
+                                 n->b == MT_NO_NODE ? MT_NO_NODE : map[n->b]);
     }
     for (int i = 0; i < e->n_coefficients; i++) {
         mt_enclosure_coefficient *const c = &e->coefficients[i];

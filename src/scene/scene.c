@@ -758,7 +758,8 @@ static mt_status find_numbers(const mt_scene_frame *f, double *number, mt_err *e
                               f->kept, &k->numbers, err));
         k->numbered = a;
     }
-    return mt_numbers_at(&k->numbers, a->at, number, NULL, err);
+    mt_numbers_at(&k->numbers, a->at, number, NULL);
+    return MT_OK;
 }
 
 /* Set the values of the design and the index maps; sys, ask, model, configuration, mem, work

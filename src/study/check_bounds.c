@@ -159,7 +159,7 @@ static mt_status compile_corner_numbers(corners *k)
 static bool is_allowed(corners *k)
 {
     bool allowed = false;
-    k->rc = mt_numbers_at(&k->limits, k->x, k->limit_value, &allowed, NULL);
+    mt_numbers_at(&k->limits, k->x, k->limit_value, &allowed);
     for (int i = 0; i < k->limits.n && allowed; i++) {
         const double v = k->limit_value[i];
         allowed = !(v < k->limited[i]->at_least) && !(v > k->limited[i]->at_most);
@@ -173,10 +173,8 @@ static void lint_corner(corners *k, mt_warning_list *out)
     const mt_model *const m = k->c->model;
     for (int c = 0; c < m->n_configurations && k->rc == MT_OK; c++) {
         if (is_asked(k->c->study, c)) {
-            k->rc = mt_numbers_at(&k->numbers[c], k->x, k->value, NULL, NULL);
-            if (k->rc == MT_OK) {
-                mt_model_lint(m, c, k->value, out);
-            }
+            mt_numbers_at(&k->numbers[c], k->x, k->value, NULL);
+            mt_model_lint(m, c, k->value, false, out);
         }
     }
     k->rc = mt_arena_failed(out->mem) ? MT_E_MEMORY : k->rc;

@@ -317,17 +317,17 @@ static bool follows_variables(const mt_study *s, const mt_goal *goal, mt_arena *
         x[i] = s->variables[i].original;
     }
     if (mt_numbers_new(s->model, MT_ABSENT, s->n_variables, inputs, 1, &number, mem, &numbers,
-                       NULL) != MT_OK ||
-        mt_numbers_at(&numbers, x, &original, NULL, NULL) != MT_OK) {
+                       NULL) != MT_OK) {
         return true;
     }
+    mt_numbers_at(&numbers, x, &original, NULL);
     for (int i = 0; i < s->n_variables && !follows; i++) {
         const double ends[] = {s->variables[i].lower, s->variables[i].upper};
         for (int k = 0; k < 2 && !follows; k++) {
             double value = 0.0;
             x[i] = ends[k];
-            follows =
-                mt_numbers_at(&numbers, x, &value, NULL, NULL) != MT_OK || !(value == original);
+            mt_numbers_at(&numbers, x, &value, NULL);
+            follows = !(value == original);
         }
         x[i] = s->variables[i].original;
     }

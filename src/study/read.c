@@ -250,6 +250,8 @@ static void read_model(mt_study_reader *s, mt_addr value)
     s->r.kinds = mt_model_kind;
     s->r.names = names;
     s->r.n_names = study->model->n_parameters;
+    s->r.curves = study->model->curves;
+    s->r.n_curves = study->model->n_curves;
     const mt_status rc =
         mt_model_original_values(study->model, &study->mem, values, NULL, NULL);
     if (rc == MT_E_MEMORY) {

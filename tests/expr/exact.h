@@ -175,6 +175,7 @@ static inline quad exact_op(mt_op op, quad x, quad y)
         return x > y ? x : y;
     case MT_OP_HYPOT:
         return quad_root((x * x) + (y * y));
+    case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:

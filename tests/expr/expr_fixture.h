@@ -24,7 +24,9 @@ static inline int find_param(const void *context, const char *name, size_t lengt
 
 static inline mt_status parse_text(const char *text, mt_arena *mem, mt_expr *e, mt_err *err)
 {
-    return mt_expr_parse(text, find_param, NULL, param_names, N_PARAMS, mem, e, err);
+    const mt_expr_scope scope = {
+        .lookup = find_param, .names = param_names, .n_names = N_PARAMS};
+    return mt_expr_parse(text, &scope, mem, e, err);
 }
 
 enum { ADDR = 77 }; /* the address that the fixture's programs carry */

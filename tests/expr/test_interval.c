@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "expr/interpolant.h"
 #include "expr/interval.h"
 #include "expr/op.h"
 #include "expr_fixture.h"
@@ -81,6 +82,13 @@ static bool any_program(uint64_t *state, fixture *f)
         mt_program_init(&f->p, N_PARAMS, &f->mem, NULL) != MT_OK) {
         return false;
     }
+    static const double x[] = {-3.0, -1.0, 0.0, 0.5, 4.0, 1e3};
+    static const double y[] = {2.0, 1.0, 1.0, -1e-3, 7.0, 7.5};
+    mt_interpolant *const curve = mt_arena_alloc(&f->mem, 1, sizeof *curve);
+    if (curve == NULL ||
+        mt_interpolant_init(curve, "c", MT_COUNT(x), x, y, &f->mem, NULL) != MT_OK) {
+        return false;
+    }
     for (int i = 0; i < N_PARAMS; i++) {
         (void)mt_program_input(&f->p, i, MT_NO_ADDR);
     }
@@ -89,7 +97,9 @@ static bool any_program(uint64_t *state, fixture *f)
         const mt_node a = below(state, f->p.count);
         const mt_node b = below(state, 3) == 0 ? mt_program_const(&f->p, any_number(state))
                                                : below(state, f->p.count);
-        if (mt_op_operands(op) == 2) {
+        if (op == MT_OP_INTERP) {
+            (void)mt_program_interp(&f->p, curve, a, MT_NO_ADDR);
+        } else if (mt_op_operands(op) == 2) {
             (void)mt_program_binary(&f->p, op, a, b, MT_NO_ADDR);
         } else {
             (void)mt_program_unary(&f->p, op, a, MT_NO_ADDR);

@@ -16,7 +16,7 @@ static int only_t(const void *context, const char *name, size_t length)
 static void compile(mt_test *t, const char *text, mt_arena *mem, mt_program *p, mt_node *node)
 {
     mt_expr e;
-    CHECK(t, mt_expr_parse(text, only_t, NULL, NULL, 0, mem, &e, NULL) == MT_OK);
+    CHECK(t, mt_expr_parse(text, &(mt_expr_scope){.lookup = only_t}, mem, &e, NULL) == MT_OK);
     CHECK(t, mt_program_init(p, 1, mem, NULL) == MT_OK);
     const mt_node time = mt_program_input(p, 0, MT_NO_ADDR);
     *node = mt_program_expr(p, &e, &time, MT_NO_ADDR);

@@ -279,8 +279,10 @@ static void kinds__follow_from_their_parts(mt_test *t)
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_expr e = {0};
         mt_test_row(t, "%s", rows[i].text);
-        if (!CHECK_INT(t, mt_expr_parse(rows[i].text, lookup, NULL, NULL, 0, &mem, &e, NULL),
-                       MT_OK)) {
+        if (!CHECK_INT(
+                t,
+                mt_expr_parse(rows[i].text, &(mt_expr_scope){.lookup = lookup}, &mem, &e, NULL),
+                MT_OK)) {
             continue;
         }
         const mt_kind_found f = mt_expr_kind(&e, kind_of, NULL);
@@ -334,8 +336,10 @@ static void kinds__complaints_say_what_to_write(mt_test *t)
         mt_expr e = {0};
         char said[MT_KIND_TEXT] = "";
         mt_test_row(t, "%s in %s", rows[i].text, rows[i].unit);
-        if (!CHECK_INT(t, mt_expr_parse(rows[i].text, lookup, NULL, NULL, 0, &mem, &e, NULL),
-                       MT_OK)) {
+        if (!CHECK_INT(
+                t,
+                mt_expr_parse(rows[i].text, &(mt_expr_scope){.lookup = lookup}, &mem, &e, NULL),
+                MT_OK)) {
             continue;
         }
         const bool any =
@@ -345,7 +349,7 @@ static void kinds__complaints_say_what_to_write(mt_test *t)
     }
     mt_test_row(t, "SI");
     mt_expr e = {0};
-    CHECK_INT(t, mt_expr_parse("50", NULL, NULL, NULL, 0, &mem, &e, NULL), MT_OK);
+    CHECK_INT(t, mt_expr_parse("50", NULL, &mem, &e, NULL), MT_OK);
     CHECK(t, !mt_kind_complaint(&e, NULL, kind_of, NULL, NULL, 0));
     mt_arena_free(&mem);
 }
@@ -359,13 +363,15 @@ static void units__of_length_multiply(mt_test *t)
     for (int i = 0; i < MT_COUNT(good); i++) {
         mt_expr e = {0};
         mt_test_row(t, "%s", good[i]);
-        CHECK_INT(t, mt_expr_parse(good[i], lookup, NULL, NULL, 0, &mem, &e, NULL), MT_OK);
+        CHECK_INT(t, mt_expr_parse(good[i], &(mt_expr_scope){.lookup = lookup}, &mem, &e, NULL),
+                  MT_OK);
     }
     for (int i = 0; i < MT_COUNT(bad); i++) {
         mt_expr e = {0};
         mt_err err = {.code = MT_OK};
         mt_test_row(t, "%s", bad[i]);
-        CHECK_INT(t, mt_expr_parse(bad[i], lookup, NULL, NULL, 0, &mem, &e, &err), MT_E_INPUT);
+        CHECK_INT(t, mt_expr_parse(bad[i], &(mt_expr_scope){.lookup = lookup}, &mem, &e, &err),
+                  MT_E_INPUT);
         CHECK(t, strstr(err.text, "is a unit: write how many of it") != NULL);
     }
     mt_arena_free(&mem);

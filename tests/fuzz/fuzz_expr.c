@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "common/fuzz.h"
+#include "expr/interpolant.h"
 #include "expr/interval.h"
 #include "expr/program.h"
 
@@ -83,7 +84,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     text[size] = '\0';
     mt_expr e;
     mt_err err = {.code = MT_OK};
-    const mt_status rc = mt_expr_parse(text, find, NULL, names, N_PARAMS, &mem, &e, &err);
+    static const double x[] = {-1, 0, 2};
+    static const double y[] = {3, 1, 1};
+    mt_interpolant curve;
+    DEMAND(mt_interpolant_init(&curve, "c", 3, x, y, &mem, NULL) == MT_OK);
+    const mt_expr_scope scope = {
+        .lookup = find, .names = names, .n_names = N_PARAMS, .curves = &curve, .n_curves = 1};
+    const mt_status rc = mt_expr_parse(text, &scope, &mem, &e, &err);
     if (rc == MT_OK) {
         use(&e, &mem);
     } else {

@@ -40,10 +40,10 @@ static void names__all_are_found_again(mt_test *t)
 /* A parameter given by an expression. */
 static bool add_parameter(mt_model *m, const char *name, const char *text)
 {
-    static const char *const none[] = {NULL};
     mt_expr expr;
     const int at = mt_model_lookup(m, name, strlen(name));
-    if (mt_expr_parse(text, mt_model_lookup, m, none, 0, &m->mem, &expr, NULL) != MT_OK) {
+    if (mt_expr_parse(text, &(mt_expr_scope){.lookup = mt_model_lookup, .context = m}, &m->mem,
+                      &expr, NULL) != MT_OK) {
         return false;
     }
     m->parameters[at].value = mt_model_add_num(m, expr, MT_NO_ADDR);

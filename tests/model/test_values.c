@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values of parameters at the original design. */
 #include <math.h>
+#include <string.h>
 
 #include "base/text.h"
 #include "io/json.h"
@@ -55,23 +56,44 @@ static void values__name_the_parameter_without_a_value(mt_test *t)
         const char *parameters;
         const char *want;
     } rows[] = {
-        {"itself", "\"a\": 1, \"b\": \"ln(a - 1)\"", "parameter \"b\" has no finite value"},
+        {"itself", "\"a\": 1, \"b\": \"ln(a - 1)\"",
+         "/parameters/b: parameter \"b\": ln(0) has no finite value"},
         {"not the one that uses it", "\"u\": \"2*b\", \"b\": \"1/z\", \"z\": 0",
-         "parameter \"b\" has no finite value"},
+         "/parameters/b: parameter \"b\": 1 / 0 has no finite value"},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
-        double v[3] = {0.0};
-        int bad = MT_ABSENT;
+        mt_text text = {0};
+        mt_json *doc = NULL;
+        mt_model *m = NULL;
         mt_err err = {.text = ""};
         mt_test_row(t, "%s", rows[i].name);
-        mt_model *const m = model_of(t, rows[i].parameters);
-        if (m != NULL) {
-            CHECK_INT(t, mt_model_original_values(m, &m->mem, v, &bad, &err), MT_E_DOMAIN);
-            CHECK_INT(t, bad, mt_model_find_parameter(m, "b"));
-        }
-        CHECK_STR(t, err.text, rows[i].want);
-        mt_model_delete(m);
+        mt_text_addf(&text,
+                     "{\"format\": \"modetune-model/1\", \"dimension\": 2, "
+                     "\"parameters\": {%s}}",
+                     rows[i].parameters);
+        CHECK_INT(t, mt_json_parse(text.s, text.length, &doc, NULL), MT_OK);
+        CHECK_INT(t, mt_model_from_json(doc, "test", &m, &err), MT_E_INPUT);
+        CHECK(t, strstr(err.text, rows[i].want) != NULL);
+        mt_json_delete(doc);
+        mt_text_free(&text);
     }
+}
+
+/* A model that is made in memory is not looked at when it is read. */
+static void values__of_a_model_in_memory_name_it_too(mt_test *t)
+{
+    double v[3] = {0.0};
+    int bad = MT_ABSENT;
+    mt_err err = {.text = ""};
+    mt_expr e = {0};
+    mt_model *const m = model_of(t, "\"u\": \"2*b\", \"b\": \"1/z\", \"z\": 1");
+    if (m != NULL && CHECK_INT(t, mt_expr_number(0.0, &m->mem, &e, NULL), MT_OK)) {
+        m->parameters[2].value = mt_model_add_num(m, e, MT_NO_ADDR);
+        CHECK_INT(t, mt_model_original_values(m, &m->mem, v, &bad, &err), MT_E_DOMAIN);
+        CHECK_INT(t, bad, mt_model_find_parameter(m, "b"));
+    }
+    CHECK_STR(t, err.text, "parameter \"b\" has no finite value");
+    mt_model_delete(m);
 }
 
 static void values__a_long_chain_needs_no_deep_stack(mt_test *t)
@@ -109,7 +131,9 @@ static void values__of_an_expression(mt_test *t)
         double got = nan("");
         mt_test_row(t, "%s", rows[i].text);
         CHECK_INT(t,
-                  mt_expr_parse(rows[i].text, mt_model_lookup, m, NULL, 0, &m->mem, &e, NULL),
+                  mt_expr_parse(rows[i].text,
+                                &(mt_expr_scope){.lookup = mt_model_lookup, .context = m},
+                                &m->mem, &e, NULL),
                   MT_OK);
         const mt_status rc = mt_model_expr_value(m, values, &e, &m->mem, &got, NULL);
         if (rows[i].want > 0.0) {
@@ -124,5 +148,6 @@ static void values__of_an_expression(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(values__follow_the_dependence_in_any_order),
              MT_TEST(values__name_the_parameter_without_a_value),
+             MT_TEST(values__of_a_model_in_memory_name_it_too),
              MT_TEST(values__a_long_chain_needs_no_deep_stack),
              MT_TEST(values__of_an_expression))

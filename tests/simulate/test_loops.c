@@ -36,7 +36,7 @@ static int only_t(const void *context, const char *name, size_t length)
 static void express(mt_test *t, const char *text, mt_arena *mem, expression *out)
 {
     mt_expr e;
-    CHECK(t, mt_expr_parse(text, only_t, NULL, NULL, 0, mem, &e, NULL) == MT_OK);
+    CHECK(t, mt_expr_parse(text, &(mt_expr_scope){.lookup = only_t}, mem, &e, NULL) == MT_OK);
     CHECK(t, mt_program_init(&out->program, 1, mem, NULL) == MT_OK);
     const mt_node time = mt_program_input(&out->program, 0, MT_NO_ADDR);
     out->signal = (mt_signal){.kind = MT_SIGNAL_EXPRESSION, .program = &out->program};

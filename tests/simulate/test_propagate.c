@@ -27,7 +27,8 @@ static mt_signal expression(mt_test *t, const char *source, mt_arena *mem)
     mt_signal s = {.kind = MT_SIGNAL_EXPRESSION};
     mt_program *const p = mt_arena_alloc(mem, 1, sizeof *p);
     mt_expr e;
-    CHECK(t, mt_expr_parse(source, only_time, NULL, NULL, 0, mem, &e, NULL) == MT_OK);
+    CHECK(t,
+          mt_expr_parse(source, &(mt_expr_scope){.lookup = only_time}, mem, &e, NULL) == MT_OK);
     CHECK(t, mt_program_init(p, 1, mem, NULL) == MT_OK);
     const mt_node time = mt_program_input(p, 0, MT_NO_ADDR);
     s.node = mt_program_expr(p, &e, &time, MT_NO_ADDR);

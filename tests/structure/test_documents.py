@@ -49,7 +49,7 @@ def words_of(schema):
     if isinstance(schema, dict):
         for name, member in schema.get("properties", {}).items():
             words.add(name)
-            words |= words_of(member) if name != "unit" else set()
+            words |= words_of(member) if name not in ("unit", "x_unit", "y_unit") else set()
         words |= {w for w in schema.get("enum", []) if isinstance(w, str)}
         for key in ("items", "oneOf", "anyOf", "allOf", "additionalProperties"):
             words |= words_of(schema.get(key))

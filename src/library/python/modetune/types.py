@@ -17,6 +17,65 @@ __all__ = [
 ]
 
 
+class _ModelCurveAlways(TypedDict):
+    x: List[float]
+    y: List[float]
+
+
+class ModelCurve(_ModelCurveAlways, total=False):
+    """A measured curve, which expressions read as interp(name, x): smooth through its points,
+    without rises or falls that they do not have (Steffen's monotone cubics). Outside of its
+    points it has no value.
+    """
+
+    x_unit: Literal[
+        "1", "m", "m^2", "m^3", "m^4", "kg", "kg/m", "kg/m^2", "kg/m^3", "kg m", "kg m^2", "s",
+        "1/s", "Hz", "rad", "rad/s", "m/s", "m/s^2", "N", "N/m", "N/m^2", "Pa", "N m", "N m^2",
+        "N m/rad", "N s/m", "N m s/rad", "m/rad", "rad/m", "J", "W", "mm", "cm", "in", "ft",
+        "deg", "rpm", "mg", "g", "t", "oz", "lb", "slug", "lbf s^2/in", "g/mm", "g/m", "kg/mm",
+        "lb/in", "lb/ft", "g/m^2", "g/cm^2", "kg/mm^2", "lb/ft^2", "g/cm^3", "kg/dm^3", "t/m^3",
+        "g/mm^3", "kg/cm^3", "kg/mm^3", "t/mm^3", "lb/in^3", "lb/ft^3", "slug/ft^3", "g mm",
+        "g cm", "g m", "kg mm", "kg cm", "lb in", "lb ft", "g mm^2", "g cm^2", "kg mm^2",
+        "kg cm^2", "t mm^2", "t m^2", "lb in^2", "lb ft^2", "slug ft^2", "lbf in s^2", "um",
+        "km", "mm^2", "cm^2", "in^2", "ft^2", "mm^3", "cm^3", "in^3", "ft^3", "mm^4", "cm^4",
+        "in^4", "ft^4", "ms", "min", "kHz", "mrad", "mm/s", "in/s", "ft/s", "km/h", "mm/s^2",
+        "in/s^2", "ft/s^2", "mN", "daN", "kN", "MN", "lbf", "kip", "kgf", "N/cm", "N/mm",
+        "N/um", "kN/m", "kN/mm", "MN/m", "lbf/in", "lbf/ft", "kip/in", "kip/ft", "kPa", "MPa",
+        "GPa", "bar", "psi", "ksi", "Msi", "N/mm^2", "kN/mm^2", "kN/m^2", "lbf/in^2",
+        "lbf/ft^2", "N mm", "N cm", "kN m", "kN mm", "lbf in", "lbf ft", "N mm^2", "kN m^2",
+        "kN mm^2", "N mm/rad", "N cm/rad", "kN m/rad", "kN mm/rad", "MN m/rad", "N m/mrad",
+        "lbf in/rad", "lbf ft/rad", "N m/deg", "N mm/deg", "kN m/deg", "lbf in/deg",
+        "lbf ft/deg", "N s/mm", "kN s/m", "kN s/mm", "lbf s/in", "lbf s/ft", "N mm s/rad",
+        "kN m s/rad", "lbf in s/rad", "lbf ft s/rad", "N m s/deg", "N mm s/deg", "deg/s",
+        "mm/rad", "cm/rad", "in/rad", "mm/deg", "rad/mm", "deg/m", "deg/mm", "mJ", "kJ", "kW",
+        "%"
+    ]
+    y_unit: Literal[
+        "1", "m", "m^2", "m^3", "m^4", "kg", "kg/m", "kg/m^2", "kg/m^3", "kg m", "kg m^2", "s",
+        "1/s", "Hz", "rad", "rad/s", "m/s", "m/s^2", "N", "N/m", "N/m^2", "Pa", "N m", "N m^2",
+        "N m/rad", "N s/m", "N m s/rad", "m/rad", "rad/m", "J", "W", "mm", "cm", "in", "ft",
+        "deg", "rpm", "mg", "g", "t", "oz", "lb", "slug", "lbf s^2/in", "g/mm", "g/m", "kg/mm",
+        "lb/in", "lb/ft", "g/m^2", "g/cm^2", "kg/mm^2", "lb/ft^2", "g/cm^3", "kg/dm^3", "t/m^3",
+        "g/mm^3", "kg/cm^3", "kg/mm^3", "t/mm^3", "lb/in^3", "lb/ft^3", "slug/ft^3", "g mm",
+        "g cm", "g m", "kg mm", "kg cm", "lb in", "lb ft", "g mm^2", "g cm^2", "kg mm^2",
+        "kg cm^2", "t mm^2", "t m^2", "lb in^2", "lb ft^2", "slug ft^2", "lbf in s^2", "um",
+        "km", "mm^2", "cm^2", "in^2", "ft^2", "mm^3", "cm^3", "in^3", "ft^3", "mm^4", "cm^4",
+        "in^4", "ft^4", "ms", "min", "kHz", "mrad", "mm/s", "in/s", "ft/s", "km/h", "mm/s^2",
+        "in/s^2", "ft/s^2", "mN", "daN", "kN", "MN", "lbf", "kip", "kgf", "N/cm", "N/mm",
+        "N/um", "kN/m", "kN/mm", "MN/m", "lbf/in", "lbf/ft", "kip/in", "kip/ft", "kPa", "MPa",
+        "GPa", "bar", "psi", "ksi", "Msi", "N/mm^2", "kN/mm^2", "kN/m^2", "lbf/in^2",
+        "lbf/ft^2", "N mm", "N cm", "kN m", "kN mm", "lbf in", "lbf ft", "N mm^2", "kN m^2",
+        "kN mm^2", "N mm/rad", "N cm/rad", "kN m/rad", "kN mm/rad", "MN m/rad", "N m/mrad",
+        "lbf in/rad", "lbf ft/rad", "N m/deg", "N mm/deg", "kN m/deg", "lbf in/deg",
+        "lbf ft/deg", "N s/mm", "kN s/m", "kN s/mm", "lbf s/in", "lbf s/ft", "N mm s/rad",
+        "kN m s/rad", "lbf in s/rad", "lbf ft s/rad", "N m s/deg", "N mm s/deg", "deg/s",
+        "mm/rad", "cm/rad", "in/rad", "mm/deg", "rad/mm", "deg/m", "deg/mm", "mJ", "kJ", "kW",
+        "%"
+    ]
+    description: str
+    source: str
+
+
 class _ModelParameterAlways(TypedDict):
     value: "ModelNumber"
 
@@ -348,6 +407,7 @@ _ModelSometimes = TypedDict("_ModelSometimes", {
     ],
     "units": "ModelUnits",
     "gravity_m_per_s2": "ModelVector",
+    "curves": Dict[str, "ModelCurve"],
     "parameters": Dict[str, Union["ModelNumber", "ModelParameter"]],
     "points": Dict[str, "ModelVector"],
     "bodies": List["ModelBody"],
