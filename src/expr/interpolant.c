@@ -77,7 +77,7 @@ static int piece_at(const mt_interpolant *curve, double x)
 }
 
 /* Range of a piece's points. */
-static mt_interval range_of(const mt_interpolant *curve, int k)
+static mt_interval range_of_points(const mt_interpolant *curve, int k)
 {
     return (mt_interval){fmin(curve->y[k], curve->y[k + 1]),
                          fmax(curve->y[k], curve->y[k + 1])};
@@ -108,7 +108,7 @@ void mt_interpolant_at(const mt_interpolant *curve, double x, double out[3])
     const double s = curve->s[k];
     const double c = curve->c[k];
     const double d = curve->d[k];
-    out[0] = cut(curve->y[k] + (t * (s + (t * (c + (t * d))))), range_of(curve, k));
+    out[0] = cut(curve->y[k] + (t * (s + (t * (c + (t * d))))), range_of_points(curve, k));
     out[1] = cut(s + (t * ((2.0 * c) + (t * (3.0 * d)))), slopes_of(curve, k));
     out[2] = (2.0 * c) + (6.0 * d * t);
 }
@@ -128,7 +128,7 @@ static double rounding_of(const mt_interpolant *curve, int k)
 /* Values of piece k within a: of a monotone one those at the ends of its part. */
 static mt_interval values_within(const mt_interpolant *curve, int k, mt_interval a)
 {
-    const mt_interval range = range_of(curve, k);
+    const mt_interval range = range_of_points(curve, k);
     const double more = rounding_of(curve, k);
     double from[3] = {curve->y[k], 0.0, 0.0};
     double to[3] = {curve->y[k + 1], 0.0, 0.0};
