@@ -208,12 +208,12 @@ static mt_align align_of(const mt_field *f)
     case MT_FIELD_LONG:
         return MT_ALIGN_RIGHT;
     case MT_FIELD_NUMBER:
+    case MT_FIELD_VALUE:
         return MT_ALIGN_POINT;
     case MT_FIELD_FORMAT:
     case MT_FIELD_TEXT:
     case MT_FIELD_CHOICE:
     case MT_FIELD_ENUM:
-    case MT_FIELD_VALUE:
     case MT_FIELD_FLAG:
     case MT_FIELD_RECORD:
     case MT_FIELD_OPTION:
@@ -263,8 +263,11 @@ static void add_count(mt_table *t, const mt_field *f, int value)
     }
 }
 
-static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f, const void *at)
+static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f,
+                     const void *item)
 {
+    const void *const at = (const char *)item + f->offset;
+    const char *word = NULL;
     switch (f->type) {
     case MT_FIELD_TEXT:
     case MT_FIELD_CHOICE:
@@ -272,6 +275,14 @@ static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f, 
         return;
     case MT_FIELD_NUMBER:
         add_number(t, c, *(const double *)at);
+        return;
+    case MT_FIELD_VALUE:
+        word = mt_record_get_pointer((const char *)item + f->other);
+        if (word != NULL) {
+            mt_table_text(t, word);
+        } else {
+            add_number(t, c, *(const double *)at);
+        }
         return;
     case MT_FIELD_COUNT:
         add_count(t, f, *(const int *)at);
@@ -284,7 +295,6 @@ static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f, 
         return;
     case MT_FIELD_FORMAT:
     case MT_FIELD_ENUM:
-    case MT_FIELD_VALUE:
     case MT_FIELD_RECORD:
     case MT_FIELD_OPTION:
     case MT_FIELD_LIST:
@@ -302,7 +312,7 @@ void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, co
     for (int k = 0; k < of->n; k++) {
         const mt_record_column *const c = &of->columns[k];
         if ((c->in & in) != 0U) {
-            add_cell(t, c, field_of(of, c), (const char *)item + c->offset);
+            add_cell(t, c, field_of(of, c), item);
         }
     }
 }

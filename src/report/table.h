@@ -69,7 +69,7 @@ int mt_table_rows(const mt_table *t);
 /*
  * Tables of records (result/record.h): a member's name and type stand in the record, which also
  * JSON is written by; a column says where it stands, what people read above it, and how many
- * digits it has.
+ * digits it has. A value is shown as its text where it has one.
  */
 enum { MT_IN_TEXT = 1, MT_IN_CSV = 2, MT_IN_TABLES = MT_IN_TEXT | MT_IN_CSV, MT_IN_OWN = 4 };
 
@@ -104,7 +104,7 @@ typedef struct mt_record_table {
     }
 
 /* Add the columns that are in any of these places, and the cells of one struct: texts, numbers,
- * counts and flags. */
+ * values, counts and flags. */
 void mt_table_record_columns(mt_table *t, const mt_record_table *of, unsigned in);
 void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, const void *item);
 
