@@ -10,6 +10,7 @@
 #include "report/explain.h"
 #include "report/table.h"
 #include "result/diff.h"
+#include "result/write.h"
 
 /* The recommendation of a rank; NULL: there is none. */
 static const mt_recommendation *find_recommendation(const mt_result *result, int rank)
@@ -285,66 +286,147 @@ static double change_of(const mt_difference *d)
                : nan("");
 }
 
-/* Integers without a unit are counts. */
-static void add_number(mt_table *t, double x, const char *unit)
+/* A difference. */
+typedef struct difference_row {
+    const char *part;
+    const char *what;
+    const char *member;
+    const char *unit;
+    double a; /* of a truth value 1 or 0; NaN: null */
+    double b;
+    const char *text_a; /* NULL: a number */
+    const char *text_b;
+    bool truth_a;
+    bool truth_b;
+    double change_percent;
+    const char *pointer_a;
+    const char *pointer_b;
+    bool derived;
+} difference_row;
+
+#define THIS difference_row
+static const mt_field difference_fields[] = {
+    MT_F_TEXT("part", part, "Part of the result: \"recommendation 1\", \"answer\"."),
+    MT_F_TEXT("what", what, "Item of that part: \"frequency upright mode 1\"; \"\": none."),
+    MT_F_TEXT_OR_NULL("member", member,
+                      "Member of the item, as in the result; null: one result lacks the item."),
+    MT_F_TEXT_OR_NULL("unit", unit, "Unit of both values."),
+    MT_F_VALUE_OR_NULL("a", a, text_a, "Value in A; null: it lacks it, or is no single value.",
+                       MT_F_TRUTH(truth_a)),
+    MT_F_VALUE_OR_NULL("b", b, text_b, "Value in B; null: it lacks it, or is no single value.",
+                       MT_F_TRUTH(truth_b)),
+    MT_F_NUMBER_OR_NULL("change_percent", change_percent,
+                        "B - A in per cent of A; null where that says nothing."),
+    MT_F_TEXT_OR_NULL("pointer_a", pointer_a, "JSON pointer into A; null: A lacks it."),
+    MT_F_TEXT_OR_NULL("pointer_b", pointer_b, "JSON pointer into B; null: B lacks it."),
+    MT_F_FLAG("derived", derived,
+              "It follows from other members of its part: an error, a change, a slope."),
+};
+static const mt_record difference_record = MT_F_RECORD_OF(
+    difference_fields, "difference", "A member that two results tell otherwise.");
+static const mt_record_column difference_columns[] = {
+    MT_R_COLUMN(part, "part", 0, MT_IN_CSV), /* a heading of texts */
+    MT_R_COLUMN(what, "what", 0, MT_IN_TABLES),
+    MT_R_COLUMN(member, "member", 0, MT_IN_TABLES),
+    MT_R_COLUMN(unit, "unit", 0, MT_IN_TABLES),
+    MT_R_RIGHT(a, "A", DIGITS, MT_IN_TABLES),
+    MT_R_RIGHT(b, "B", DIGITS, MT_IN_TABLES),
+    MT_R_CHANGE(change_percent, "change [%]", NULL, CHANGE_DIGITS, MT_IN_TABLES),
+};
+static const mt_record_table difference_rows =
+    MT_R_TABLE_OF(difference_record, difference_columns);
+#undef THIS
+
+/* All differences of two results. */
+typedef struct diff_row {
+    const char *a;
+    const char *b;
+    double rel_tol;
+    double abs_tol;
+    bool same;
+    int n_made_by;
+    difference_row *made_by;
+    int n_differences;
+    difference_row *differences;
+} diff_row;
+
+#define THIS diff_row
+static const mt_field diff_fields[] = {
+    MT_F_TEXT("a", a, "The first result."),
+    MT_F_TEXT("b", b, "The second result."),
+    MT_F_NUMBER("rel_tol", rel_tol, "Part of its number by which a value may differ."),
+    MT_F_NUMBER("abs_tol", abs_tol, "Number by which a value may differ."),
+    MT_F_FLAG("same", same, "The answers are the same."),
+    MT_F_LIST("made_by", made_by, n_made_by, difference_row, difference_record,
+              "What differs in how the answers were made."),
+    MT_F_LIST("differences", differences, n_differences, difference_row, difference_record,
+              "What differs in the answers."),
+};
+static const mt_record diff_record = MT_F_RECORD_OF(diff_fields, NULL, NULL);
+#undef THIS
+
+/* The word of tables for a value that is no number, or, without a unit, for a count; NULL: it
+ * is shown as a number. */
+static const char *word_of(const mt_reported *told, const char *unit, mt_arena *mem)
 {
     static const double LARGEST_COUNT = 1e15;
-    if (unit == NULL && x == floor(x) && fabs(x) < LARGEST_COUNT) {
-        mt_table_integer(t, (long long)x);
-    } else {
-        mt_table_number(t, x, DIGITS);
-    }
-}
-
-static void add_value(mt_table *t, const mt_reported *told, const char *unit)
-{
+    const double x = told->number;
     switch (told->type) {
     case MT_JSON_NUMBER:
-        add_number(t, told->number, unit);
-        return;
+        return unit == NULL && x == floor(x) && fabs(x) < LARGEST_COUNT
+                   ? mt_arena_printf(mem, "%lld", (long long)x)
+                   : NULL;
     case MT_JSON_STRING:
-        mt_table_text(t, told->text);
-        return;
+        return told->text;
     case MT_JSON_BOOL:
-        mt_table_text(t, told->number != 0.0 ? "true" : "false");
-        return;
+        return x != 0.0 ? "true" : "false";
     case MT_JSON_NULL:
-        mt_table_text(t, NULL);
-        return;
+        return NULL;
     case MT_JSON_ARRAY:
     case MT_JSON_OBJECT:
-        mt_table_text(t, "there");
-        return;
+        return "there";
     }
-    mt_table_text(t, "missing");
+    return "missing";
 }
 
-static mt_table make_difference_columns(bool with_part)
+static double number_of(const mt_reported *told)
 {
-    mt_table t = mt_table_default();
-    if (with_part) {
-        mt_table_column(&t, "part", "part", MT_ALIGN_LEFT);
-    }
-    mt_table_column(&t, "what", "what", MT_ALIGN_LEFT);
-    mt_table_column(&t, "member", "member", MT_ALIGN_LEFT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
-    mt_table_column(&t, "A", "a", MT_ALIGN_RIGHT);
-    mt_table_column(&t, "B", "b", MT_ALIGN_RIGHT);
-    mt_table_column(&t, "change [%]", "change_percent", MT_ALIGN_POINT);
-    return t;
+    return told->type == MT_JSON_NUMBER || told->type == MT_JSON_BOOL ? told->number : nan("");
 }
 
-static void add_difference_row(mt_table *t, const mt_difference *d, bool with_part)
+static const char *text_of(const mt_reported *told)
 {
-    if (with_part) {
-        mt_table_text(t, d->part);
-    }
-    mt_table_text(t, d->what[0] == '\0' ? NULL : d->what);
-    mt_table_text(t, d->member[0] == '\0' ? NULL : d->member);
-    mt_table_text(t, d->unit);
-    add_value(t, &d->told[0], d->unit);
-    add_value(t, &d->told[1], d->unit);
-    mt_table_change(t, change_of(d), CHANGE_DIGITS);
+    return told->type == MT_JSON_STRING ? told->text : NULL;
+}
+
+/* in_words: of tables, which say what is no number; words lie in mem. */
+static difference_row difference_row_of(const mt_difference *d, bool in_words, mt_arena *mem)
+{
+    const mt_reported *const a = &d->told[0];
+    const mt_reported *const b = &d->told[1];
+    return (difference_row){
+        .part = d->part,
+        .what = in_words && d->what[0] == '\0' ? NULL : d->what,
+        .member = d->member[0] == '\0' ? NULL : d->member,
+        .unit = d->unit,
+        .a = number_of(a),
+        .b = number_of(b),
+        .text_a = in_words ? word_of(a, d->unit, mem) : text_of(a),
+        .text_b = in_words ? word_of(b, d->unit, mem) : text_of(b),
+        .truth_a = a->type == MT_JSON_BOOL,
+        .truth_b = b->type == MT_JSON_BOOL,
+        .change_percent = change_of(d),
+        .pointer_a = d->pointer[0],
+        .pointer_b = d->pointer[1],
+        .derived = d->derived,
+    };
+}
+
+static void add_difference(mt_table *t, const mt_difference *d, unsigned in)
+{
+    const difference_row row = difference_row_of(d, true, &t->mem);
+    mt_table_record_row(t, &difference_rows, in, &row);
+    t->failed = t->failed || mt_arena_failed(&t->mem);
 }
 
 /* Those of one part, numbers first .. last - 1, as a section; what follows from others only
@@ -353,13 +435,14 @@ static int print_part(const mt_difference *items, int first, int last, bool prov
                       mt_text *out)
 {
     int left_out = 0;
-    mt_table t = make_difference_columns(false);
+    mt_table t = mt_table_default();
+    mt_table_record_columns(&t, &difference_rows, MT_IN_TEXT);
     for (int pass = 0; pass < 2 && mt_table_rows(&t) == 0; pass++) {
         left_out = 0;
         for (int i = first; i < last; i++) {
             const bool shown = pass == 1 || !items[i].derived;
             if (items[i].provenance == provenance && shown) {
-                add_difference_row(&t, &items[i], false);
+                add_difference(&t, &items[i], MT_IN_TEXT);
             }
             left_out += items[i].provenance == provenance && !shown ? 1 : 0;
         }
@@ -403,63 +486,60 @@ static void print_text(const mt_args *args, const mt_result_diff *diff, mt_text 
     mt_text_add(out, ".\n");
 }
 
-static void put_value(mt_json_writer *w, const char *name, const mt_reported *t)
+static mt_status diff_row_of(const mt_args *args, const mt_result_diff *diff, mt_arena *mem,
+                             diff_row *out, mt_err *err)
 {
-    if (t->type == MT_JSON_NUMBER) {
-        mt_json_put_number(w, name, t->number);
-    } else if (t->type == MT_JSON_STRING) {
-        mt_json_put_string(w, name, t->text);
-    } else if (t->type == MT_JSON_BOOL) {
-        mt_json_put_bool(w, name, t->number != 0.0);
-    } else {
-        mt_json_put_null(w, name);
-    }
-}
-
-static void put_differences(mt_json_writer *w, const char *name, const mt_result_diff *diff,
-                            bool provenance)
-{
-    mt_json_open(w, name, '[');
+    const int n_made_by = diff->n - diff->of_answer;
+    *out = (diff_row){
+        .a = args->operands[0],
+        .b = args->operands[1],
+        .rel_tol = args->rel_tol,
+        .abs_tol = args->abs_tol,
+        .same = diff->of_answer == 0,
+        .made_by = mt_arena_alloc(mem, (size_t)n_made_by, sizeof *out->made_by),
+        .differences = mt_arena_alloc(mem, (size_t)diff->of_answer, sizeof *out->differences),
+    };
+    MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < diff->n; i++) {
         const mt_difference *const d = &diff->items[i];
-        if (d->provenance != provenance) {
-            continue;
-        }
-        mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "part", d->part);
-        mt_json_put_string(w, "what", d->what);
-        mt_json_put_string(w, "member", d->member[0] == '\0' ? NULL : d->member);
-        mt_json_put_string(w, "unit", d->unit);
-        put_value(w, "a", &d->told[0]);
-        put_value(w, "b", &d->told[1]);
-        mt_json_put_number(w, "change_percent", change_of(d));
-        mt_json_put_string(w, "pointer_a", d->pointer[0]);
-        mt_json_put_string(w, "pointer_b", d->pointer[1]);
-        mt_json_put_bool(w, "derived", d->derived);
-        mt_json_close(w);
+        difference_row *const to = d->provenance ? &out->made_by[out->n_made_by++]
+                                                 : &out->differences[out->n_differences++];
+        *to = difference_row_of(d, false, mem);
     }
-    mt_json_close(w);
+    return MT_OK;
+}
+
+static int print_diff_json(const mt_args *args, const mt_result_diff *diff, mt_text *out)
+{
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_arena mem = {.first = NULL};
+    mt_err err = {.code = MT_OK};
+    diff_row row;
+    mt_status rc = mt_arena_init(&mem, 0, &err);
+    rc = rc == MT_OK ? diff_row_of(args, diff, &mem, &row, &err) : rc;
+    int code = MT_EXIT_DONE;
+    if (rc == MT_OK) {
+        mt_json_open(&w, NULL, '{');
+        mt_record_put(&w, &diff_record, &row);
+        mt_json_close(&w);
+        code = mt_cli_json_done(&w);
+    } else {
+        code = mt_cli_failed(rc, &err);
+    }
+    mt_arena_free(&mem);
+    return code;
 }
 
 static int print_differences(const mt_args *args, const mt_result_diff *diff, mt_text *out)
 {
     if (args->format == MT_FORMAT_JSON) {
-        mt_json_writer w = mt_json_writer_default(out);
-        mt_json_open(&w, NULL, '{');
-        mt_json_put_string(&w, "a", args->operands[0]);
-        mt_json_put_string(&w, "b", args->operands[1]);
-        mt_json_put_number(&w, "rel_tol", args->rel_tol);
-        mt_json_put_number(&w, "abs_tol", args->abs_tol);
-        mt_json_put_bool(&w, "same", diff->of_answer == 0);
-        put_differences(&w, "made_by", diff, true);
-        put_differences(&w, "differences", diff, false);
-        mt_json_close(&w);
-        return mt_cli_json_done(&w);
+        return print_diff_json(args, diff, out);
     }
     if (args->format == MT_FORMAT_CSV) {
-        mt_table t = make_difference_columns(true);
+        mt_table t = mt_table_default();
+        mt_table_record_columns(&t, &difference_rows, MT_IN_CSV);
         for (int i = 0; i < diff->n; i++) {
-            add_difference_row(&t, &diff->items[i], true);
+            add_difference(&t, &diff->items[i], MT_IN_CSV);
         }
         mt_table_csv(&t, out);
         mt_table_free(&t);

@@ -239,7 +239,8 @@ void mt_table_record_columns(mt_table *t, const mt_record_table *of, unsigned in
         const mt_record_column *const c = &of->columns[k];
         const mt_field *const f = field_of(of, c);
         if ((c->in & in) != 0U) {
-            mt_table_column(t, c->heading, member_of(c, f), align_of(f));
+            mt_table_column(t, c->heading, member_of(c, f),
+                            c->right ? MT_ALIGN_RIGHT : align_of(f));
         }
     }
 }

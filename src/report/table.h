@@ -79,6 +79,7 @@ typedef struct mt_record_column {
     const char *member;  /* for machines, of what JSON does not have; NULL: the heading */
     int digits;          /* of numbers */
     bool with_sign;
+    bool right;  /* at the right, numbers not by their points */
     unsigned in; /* MT_IN_TEXT, MT_IN_CSV; from MT_IN_OWN on: where the caller says so */
 } mt_record_column;
 
@@ -97,6 +98,11 @@ typedef struct mt_record_table {
     {                                                                            \
         .offset = offsetof(THIS, m), .heading = (heading_), .member = (member_), \
         .digits = (digits_), .with_sign = true, .in = (in_)                      \
+    }
+#define MT_R_RIGHT(m, heading_, digits_, in_)                                    \
+    {                                                                            \
+        .offset = offsetof(THIS, m), .heading = (heading_), .digits = (digits_), \
+        .right = true, .in = (in_)                                               \
     }
 #define MT_R_TABLE_OF(record_, columns_)           \
     {                                              \

@@ -71,6 +71,10 @@ typedef struct mt_field {
      * at `when` is true. */
     bool optional;
     size_t when;
+    /* Of a value that is written and never read: a truth value where the bool at `truth` is
+     * true. */
+    bool logical;
+    size_t truth;
 } mt_field;
 
 struct mt_record {
@@ -91,6 +95,7 @@ struct mt_record {
 #define MT_F_MEMBER(of, m) (offsetof(THIS, m) * _Generic(&((THIS *)NULL)->m, of * : 1U))
 #define MT_F_FIELD(json, kind, or_null, of, m) \
     .name = (json), .type = (kind), .nullable = (or_null), .offset = MT_F_MEMBER(of, m)
+#define MT_F_TRUTH(m)     .logical = true, .truth = MT_F_MEMBER(bool, m)
 #define MT_F_ONE_OF(list) .choices = (list), .n_choices = MT_COUNT(list)
 #define MT_F_WHEN(m)      .optional = true, .when = MT_F_MEMBER(bool, m)
 

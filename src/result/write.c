@@ -83,6 +83,19 @@ static void put_long(mt_json_writer *w, const mt_field *f, long value)
     }
 }
 
+static void put_value(mt_json_writer *w, const mt_field *f, const void *item)
+{
+    const double value = *(const double *)((const char *)item + f->offset);
+    const char *const text = mt_record_get_pointer((const char *)item + f->other);
+    if (text != NULL) {
+        mt_json_put_string(w, f->name, text);
+    } else if (f->logical && *(const bool *)((const char *)item + f->truth)) {
+        mt_json_put_bool(w, f->name, value != 0.0);
+    } else {
+        mt_json_put_number(w, f->name, value);
+    }
+}
+
 static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
                       const names *variables)
 {
@@ -102,11 +115,7 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         mt_json_put_string(w, f->name, f->choices[*(const unsigned *)at]);
         break;
     case MT_FIELD_VALUE:
-        if (*(const char *const *)other != NULL) {
-            mt_json_put_string(w, f->name, *(const char *const *)other);
-            break;
-        }
-        mt_json_put_number(w, f->name, *(const double *)at);
+        put_value(w, f, item);
         break;
     case MT_FIELD_NUMBER:
         mt_json_put_number(w, f->name, *(const double *)at);

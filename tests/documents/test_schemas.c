@@ -349,7 +349,8 @@ static void add_field_type(mt_test *t, mt_text *out, const mt_field *f)
         add_type_or_null(out, "number", f->nullable);
         break;
     case MT_FIELD_VALUE:
-        mt_text_add(out, "\"type\": [\"number\", \"string\", \"null\"]");
+        mt_text_addf(out, "\"type\": [\"number\", \"string\", %s\"null\"]",
+                     f->logical ? "\"boolean\", " : "");
         break;
     case MT_FIELD_COUNT:
     case MT_FIELD_LONG:
