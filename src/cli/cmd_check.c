@@ -18,6 +18,7 @@
 #include "problem/problem.h"
 #include "report/summary.h"
 #include "report/table.h"
+#include "result/write.h"
 
 /*
  * Problems of files as SARIF 2.1.0, which code hosts show at the lines of a review and editors
@@ -31,10 +32,27 @@ typedef struct file_problem {
     bool unread;      /* the file itself could not be read */
     const char *file; /* as given; relative ones become relative URIs */
     int line;         /* 0: no place; shown at the first line, which hosts require */
-    int column;       /* of code points */
+    int column;       /* of code points; 0: no place */
     const char *pointer;
     const char *message;
 } file_problem;
+
+static const char *const severities[MT_SEVERITY_COUNT] = {"error", "warning", "note"};
+
+#define THIS file_problem
+static const mt_field problem_fields[] = {
+    MT_F_TEXT("file", file, "The file, as it was given or is named by one that was."),
+    MT_F_COUNT_OR_NULL("line", line, 1, "From 1; null: of the whole file."),
+    MT_F_COUNT_OR_NULL("column", column, 1, "From 1, in characters; null: of the whole file."),
+    MT_F_TEXT_OR_NULL("pointer", pointer, "JSON pointer in that file."),
+    MT_F_ENUM("severity", severity, mt_severity, severities,
+              "An error: the file cannot be used; a warning: it is suspicious; a note: good to "
+              "know."),
+    MT_F_TEXT("message", message, "In words."),
+};
+static const mt_record problem_record =
+    MT_F_RECORD_OF(problem_fields, NULL, "A problem of a file.");
+#undef THIS
 
 /* Of SARIF ("Static Analysis Results Interchange Format", OASIS, version 2.1.0) what code hosts
  * read: tool.driver with its rules, results with rule, level, message and place. */
@@ -402,84 +420,117 @@ typedef struct output {
     told_before told;
 } output;
 
-static void put_problem(output *to, const file_problem *p)
-{
-    static const char *const names[MT_SEVERITY_COUNT] = {"error", "warning", "note"};
-    mt_json_writer *const w = &to->w;
-    if (to->format == MT_FORMAT_SARIF) {
-        sarif_put(w, p);
-        return;
-    }
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "file", p->file);
-    if (p->line > 0) {
-        mt_json_put_integer(w, "line", p->line);
-        mt_json_put_integer(w, "column", p->column);
-    } else {
-        mt_json_put_null(w, "line");
-        mt_json_put_null(w, "column");
-    }
-    mt_json_put_string(w, "pointer", p->pointer);
-    mt_json_put_string(w, "severity", names[p->severity]);
-    mt_json_put_string(w, "message", p->message);
-    mt_json_close(w);
-}
+/* A file that was checked. */
+typedef struct checked_row {
+    const char *file;
+    const char *kind;
+    bool ok;
+    int n_problems;
+    file_problem *problems;
+    int left_out;
+    int n_doubts;
+    mt_warning *doubts;
+    int n_facts;
+    mt_warning *facts;
+} checked_row;
 
-/* Write the messages, each with its place, or the failure where there are none. */
-static void put_problems(output *to, const char *path, const mt_diagnostics *messages,
-                         const char *failure)
+#define THIS checked_row
+static const mt_field checked_fields[] = {
+    MT_F_TEXT("file", file, "The file, as it was given."),
+    MT_F_CHOICE_OR_NULL("kind", kind, kinds, "What its format says; null: that is unknown."),
+    MT_F_FLAG("ok", ok, "It has no error."),
+    MT_F_LIST(
+        "problems", problems, n_problems, file_problem, problem_record,
+        "Its problems and those of the files that it names; what was told of a file before "
+        "it is left out."),
+    MT_F_COUNT("left_out", left_out, 0, "How many more there are."),
+    MT_F_LIST("doubts", doubts, n_doubts, mt_warning, mt_warning_record,
+              "What is suspicious about its configurations."),
+    MT_F_LIST("facts", facts, n_facts, mt_warning, mt_warning_record,
+              "What to know of its configurations."),
+};
+static const mt_record checked_record =
+    MT_F_RECORD_OF(checked_fields, "file", "A file that was checked.");
+static const mt_record_column checked_columns[] = {
+    MT_R_COLUMN(file, "file", 0, MT_IN_CSV),
+    MT_R_COLUMN(kind, "kind", 0, MT_IN_CSV),
+    MT_R_COLUMN(ok, "ok", 0, MT_IN_CSV),
+};
+static const mt_record_table checked_rows = MT_R_TABLE_OF(checked_record, checked_columns);
+#undef THIS
+
+/* The messages, each with its place, or the failure where no message is an error; in mem. */
+static void list_problems(const char *path, const mt_diagnostics *messages, const char *failure,
+                          mt_arena *mem, checked_row *out)
 {
     const int count = mt_diagnostics_count(messages);
+    out->problems = mt_arena_alloc(mem, (size_t)count + 1, sizeof *out->problems);
+    out->left_out = mt_diagnostics_left_out(messages);
+    if (mt_arena_failed(mem)) {
+        return;
+    }
     for (int i = 0; i < count; i++) {
-        const file_problem p = {.severity = mt_diagnostics_severity(messages, i),
-                                .file = mt_diagnostics_file(messages, i),
-                                .line = mt_diagnostics_line(messages, i),
-                                .column = mt_diagnostics_column(messages, i),
-                                .pointer = mt_diagnostics_pointer(messages, i),
-                                .message = mt_diagnostics_message(messages, i)};
-        put_problem(to, &p);
+        const int line = mt_diagnostics_line(messages, i);
+        out->problems[out->n_problems++] =
+            (file_problem){.severity = mt_diagnostics_severity(messages, i),
+                           .file = mt_diagnostics_file(messages, i),
+                           .line = line,
+                           .column = line > 0 ? mt_diagnostics_column(messages, i) : 0,
+                           .pointer = mt_diagnostics_pointer(messages, i),
+                           .message = mt_diagnostics_message(messages, i)};
     }
     if (failure != NULL && mt_diagnostics_first_error(messages) < 0) {
-        const file_problem p = {.unread = true, .file = path, .message = failure};
-        put_problem(to, &p);
+        out->problems[out->n_problems++] =
+            (file_problem){.unread = true, .file = path, .message = failure};
     }
-    to->left_out += mt_diagnostics_left_out(messages);
 }
 
-/* Write the messages of one file. */
-static void put_file(output *to, const char *path, const char *kind,
-                     const mt_diagnostics *messages, const mt_warning_list *found,
-                     const char *failure)
+/* The warnings of one level; in mem. */
+static mt_warning *list_warnings(const mt_warning_list *list, mt_warning_level level,
+                                 mt_arena *mem, int *n)
+{
+    mt_warning *const out = mt_arena_alloc(mem, (size_t)list->n, sizeof *out);
+    for (int i = 0; out != NULL && i < list->n; i++) {
+        if (list->items[i].level == level) {
+            out[(*n)++] = list->items[i];
+        }
+    }
+    return out;
+}
+
+/* Write what was found of one file; lists lie in mem. */
+static void put_file(output *to, checked_row *row, const mt_diagnostics *messages,
+                     const mt_warning_list *found, const char *failure, mt_arena *mem)
 {
     switch (to->format) {
     case MT_FORMAT_JSON:
-        mt_json_open(&to->w, NULL, '{');
-        mt_json_put_string(&to->w, "file", path);
-        mt_json_put_string(&to->w, "kind", kind);
-        mt_json_put_bool(&to->w, "ok", failure == NULL);
-        mt_json_open(&to->w, "problems", '[');
-        put_problems(to, path, messages, failure);
-        mt_json_close(&to->w);
-        mt_json_put_integer(&to->w, "left_out", mt_diagnostics_left_out(messages));
-        mt_json_put_warnings(&to->w, "doubts", found, MT_LEVEL_WARNING);
-        mt_json_put_warnings(&to->w, "facts", found, MT_LEVEL_NOTE);
-        mt_json_close(&to->w);
+        list_problems(row->file, messages, failure, mem, row);
+        row->doubts = list_warnings(found, MT_LEVEL_WARNING, mem, &row->n_doubts);
+        row->facts = list_warnings(found, MT_LEVEL_NOTE, mem, &row->n_facts);
+        if (!mt_arena_failed(mem)) {
+            mt_json_open(&to->w, NULL, '{');
+            mt_record_put(&to->w, &checked_record, row);
+            mt_json_close(&to->w);
+        }
         break;
     case MT_FORMAT_SARIF:
-        put_problems(to, path, messages, failure);
+        list_problems(row->file, messages, failure, mem, row);
+        for (int i = 0; i < row->n_problems; i++) {
+            sarif_put(&to->w, &row->problems[i]);
+        }
+        to->left_out += row->left_out;
         break;
     case MT_FORMAT_CSV:
-        mt_table_text(&to->table, path);
-        mt_table_text(&to->table, kind);
-        mt_table_text(&to->table, failure == NULL ? "true" : "false");
+        mt_table_record_row(&to->table, &checked_rows, MT_IN_CSV, row);
         break;
     case MT_FORMAT_HTML: /* of report alone */
     case MT_FORMAT_TEXT:
-        if (failure == NULL) {
-            mt_text_addf(to->text, "%s: ok (%s)\n", path, kind);
+        if (row->ok) {
+            mt_text_addf(to->text, "%s: ok (%s)\n", row->file, row->kind);
         }
         break;
     }
+    to->text->failed = to->text->failed || mt_arena_check(mem, NULL) != MT_OK;
 }
 
 /* True where both messages are the same at the same place of the same file, given by any
@@ -552,15 +603,16 @@ static int check_file(const mt_args *args, const char *path, output *to)
     mt_warning_list found = mt_warning_list_default(&mem);
     subject read = {.model = NULL};
     mt_json *doc = NULL;
-    mt_status rc = find_kind(path, &opt, &kind, &doc, &messages, &err);
+    mt_status rc = mt_arena_init(&mem, 0, &err);
+    rc = rc == MT_OK ? find_kind(path, &opt, &kind, &doc, &messages, &err) : rc;
     rc = rc == MT_OK ? load_document(kind, doc, path, &opt, &read, &messages, &err) : rc;
-    rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     rc = rc == MT_OK ? examine_mechanics(&read, path, &messages, &found, &err) : rc;
     add_messages(&found, path, &messages);
     mt_diagnostics fresh = {.count = 0};
     leave_told(&messages, path, &to->told, &fresh);
-    put_file(to, path, kind == KIND_COUNT ? NULL : kinds[kind], &fresh, &found,
-             rc == MT_OK ? NULL : err.text);
+    checked_row row = {
+        .file = path, .kind = kind == KIND_COUNT ? NULL : kinds[kind], .ok = rc == MT_OK};
+    put_file(to, &row, &fresh, &found, rc == MT_OK ? NULL : err.text, &mem);
     mt_arena_free(&read.mem);
     mt_model_delete(read.model);
     mt_study_delete(read.study);
@@ -580,9 +632,7 @@ static int run_check(const mt_args *args, mt_text *out)
                  .table = mt_table_default(),
                  .text = out};
     int code = MT_EXIT_DONE;
-    mt_table_column(&to.table, "file", "file", MT_ALIGN_LEFT);
-    mt_table_column(&to.table, "kind", "kind", MT_ALIGN_LEFT);
-    mt_table_column(&to.table, "ok", "ok", MT_ALIGN_LEFT);
+    mt_table_record_columns(&to.table, &checked_rows, MT_IN_CSV);
     if (json) {
         mt_json_open(&to.w, NULL, '[');
     } else if (sarif) {
