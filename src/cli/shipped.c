@@ -10,6 +10,7 @@
 #include "io/file.h"
 #include "io/folder.h"
 #include "report/table.h"
+#include "result/write.h"
 
 enum { SHIPPED_NAME = 64, SHIPPED_MOST = 100 };
 
@@ -72,22 +73,20 @@ static void add_first_sentence(const mt_shipped *file, const char *member, mt_te
     mt_json_delete(doc);
 }
 
-static int print_json(const mt_table *t, mt_text *out)
-{
-    mt_json_writer w = mt_json_writer_default(out);
-    mt_json_open(&w, NULL, '[');
-    for (int row = 0; row < mt_table_rows(t); row++) {
-        mt_json_open(&w, NULL, '{');
-        for (int k = 0; k < t->n_columns; k++) {
-            const mt_cell *const cell = &t->cells[(row * t->n_columns) + k];
-            mt_json_put_string(&w, t->columns[k].member, cell->exact);
-        }
-        mt_json_close(&w);
-    }
-    mt_json_close(&w);
-    out->failed = out->failed || t->failed;
-    return mt_cli_json_done(&w);
-}
+/* A file of a list. */
+typedef struct listed_row {
+    const char *name;
+    const char *text;
+} listed_row;
+
+#define THIS listed_row
+static const mt_field listed_fields[] = {
+    MT_F_TEXT("name", name, "What commands call it."),
+    MT_F_TEXT("text", text, "What it is."),
+};
+static const mt_record listed_record =
+    MT_F_RECORD_OF(listed_fields, "listed", "A file that is part of the program.");
+#undef THIS
 
 void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out)
 {
@@ -103,27 +102,45 @@ void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out)
     }
 }
 
+#define THIS listed_row
 int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out)
 {
+    const mt_record_column columns[] = {
+        MT_R_COLUMN(name, kind->what, 0, MT_IN_TABLES),
+        MT_R_COLUMN(text, kind->heading, 0, MT_IN_TABLES),
+    };
+    const mt_record_table rows = MT_R_TABLE_OF(listed_record, columns);
+    mt_json_writer w = mt_json_writer_default(out);
     mt_table t = mt_table_default();
     int n = 0;
     int code = MT_EXIT_DONE;
     const mt_shipped *const files = mt_shipped_all(&n);
-    mt_table_column(&t, kind->what, "name", MT_ALIGN_LEFT);
-    mt_table_column(&t, kind->heading, "text", MT_ALIGN_LEFT);
+    const bool json = args->format == MT_FORMAT_JSON;
+    mt_table_record_columns(&t, &rows, MT_IN_TABLES);
+    if (json) {
+        mt_json_open(&w, NULL, '[');
+    }
     for (int i = 0; i < n; i++) {
         char name[SHIPPED_NAME];
         mt_text said = {.s = NULL};
-        if (shipped_file_name(kind, &files[i], name, sizeof name)) {
-            add_first_sentence(&files[i], kind->says, &said);
-            mt_table_text(&t, name);
-            mt_table_text(&t, said.s);
+        if (!shipped_file_name(kind, &files[i], name, sizeof name)) {
+            continue;
         }
-        t.failed = t.failed || said.failed;
+        add_first_sentence(&files[i], kind->says, &said);
+        const listed_row row = {.name = name, .text = said.s == NULL ? "" : said.s};
+        if (json) {
+            mt_json_open(&w, NULL, '{');
+            mt_record_put(&w, &listed_record, &row);
+            mt_json_close(&w);
+        } else {
+            mt_table_record_row(&t, &rows, MT_IN_TABLES, &row);
+        }
+        out->failed = out->failed || said.failed;
         mt_text_free(&said);
     }
-    if (args->format == MT_FORMAT_JSON) {
-        code = print_json(&t, out);
+    if (json) {
+        mt_json_close(&w);
+        code = mt_cli_json_done(&w);
     } else if (args->format == MT_FORMAT_CSV) {
         mt_table_csv(&t, out);
     } else {
@@ -132,6 +149,7 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
     mt_table_free(&t);
     return code;
 }
+#undef THIS
 
 /* The file of that name, NULL: there is none. known, text: names that there are, *n of them. */
 static const mt_shipped *find_shipped(const mt_shipped_kind *kind, const char *name,
