@@ -12,6 +12,7 @@
 #include "model/model.h"
 #include "model/values.h"
 #include "report/table.h"
+#include "result/write.h"
 
 /* The drive and the positions of --drive and --hold. */
 typedef struct sweep_request {
@@ -229,60 +230,193 @@ static void sweep_print(const sweep_view *v, mt_text *out)
     mt_table_free(&t);
 }
 
-static void json_point(const sweep_view *v, int point, mt_json_writer *w)
+/* JSON: a joint with a coordinate at a position. */
+typedef struct joint_row {
+    const char *name;
+    bool turns;
+    bool slides;
+    double coordinate;
+    double ratio;
+} joint_row;
+
+#define THIS joint_row
+static const mt_field joint_fields[] = {
+    MT_F_TEXT("name", name, "The joint."),
+    MT_F_NUMBER("coordinate_rad", coordinate,
+                "Its coordinate from the reference position, whole turns counted.",
+                MT_F_WHEN(turns)),
+    MT_F_NUMBER("coordinate_m", coordinate, "Its coordinate from the reference position.",
+                MT_F_WHEN(slides)),
+    MT_F_NUMBER("ratio", ratio, "Its motion per motion of the driven joint: the exact slope."),
+};
+static const mt_record joint_record =
+    MT_F_RECORD_OF(joint_fields, "joint", "A joint with a coordinate at a position.");
+#undef THIS
+
+/* A position of the driven joint. */
+typedef struct point_row {
+    bool turns;          /* the driven joint: its position is an angle */
+    bool slides;         /* else */
+    double position_rad; /* of a joint that turns */
+    double position_m;   /* of one that slides */
+    const char *error;
+    bool failed;
+    bool reached;
+    int n_joints;
+    joint_row *joints;
+    bool holds_moment;
+    bool holds_force;
+    double hold_n_m; /* of a moment */
+    double hold_n;   /* of a force */
+    double residual;
+    double gap_m;
+    mt_dead_centre_row *dead_centre;
+    bool with_modes;
+    int n_hz;
+    double *hz;
+    int rigid;
+    int unstable;
+    int undecided;
+} point_row;
+
+#define THIS point_row
+static const mt_field point_fields[] = {
+    MT_F_NUMBER("position_rad", position_rad, "Position of the driven joint, an angle.",
+                MT_F_WHEN(turns)),
+    MT_F_NUMBER("position_m", position_m, "Position of the driven joint, a displacement.",
+                MT_F_WHEN(slides)),
+    MT_F_TEXT("error", error, "Why it is not reached; then nothing else is known.",
+              MT_F_WHEN(failed)),
+    MT_F_LIST("joints", joints, n_joints, joint_row, joint_record,
+              "Every joint with a coordinate.", .flat = true, MT_F_WHEN(reached)),
+    MT_F_NUMBER("hold_n_m", hold_n_m, "What holds the position: a moment.",
+                MT_F_WHEN(holds_moment)),
+    MT_F_NUMBER("hold_n", hold_n, "What holds the position: a force.", MT_F_WHEN(holds_force)),
+    MT_F_NUMBER("equilibrium_residual", residual, "Part of the forces at work that is left.",
+                MT_F_WHEN(reached)),
+    MT_F_NUMBER("gap_m", gap_m, "Largest violation of a joint.", MT_F_WHEN(reached)),
+    MT_F_OPTION("dead_centre", dead_centre, mt_dead_centre_row, mt_dead_centre_record,
+                "A dead centre within about three degrees; null: none.", MT_F_WHEN(reached)),
+    MT_F_NUMBERS("frequencies_hz", hz, n_hz,
+                 "With --modes: natural frequencies by index; null: there is no such mode.",
+                 MT_F_WHEN(with_modes)),
+    MT_F_COUNT("rigid_body_modes", rigid, 0, "With --modes: number of modes of frequency 0.",
+               MT_F_WHEN(with_modes)),
+    MT_F_COUNT("unstable_modes", unstable, 0, "With --modes: number of modes that grow.",
+               MT_F_WHEN(with_modes)),
+    MT_F_COUNT("undecided_modes", undecided, 0,
+               "With --modes: number of modes of which rounding hides whether they are stable.",
+               MT_F_WHEN(with_modes)),
+};
+static const mt_record point_record =
+    MT_F_RECORD_OF(point_fields, "point", "A position of the driven joint.");
+/* Columns of CSV: where the joint turns, or slides, and a moment holds it, or a force. */
+enum { IN_TURNS = MT_IN_OWN, IN_SLIDES = 2 * MT_IN_OWN, IN_MOMENT = 4 * MT_IN_OWN };
+enum { IN_FORCE = 8 * MT_IN_OWN };
+static const mt_record_column point_columns[] = {
+    MT_R_COLUMN(position_rad, "position [rad]", DIGITS, IN_TURNS),
+    MT_R_COLUMN(position_m, "position [m]", DIGITS, IN_SLIDES),
+    MT_R_COLUMN(hold_n_m, "hold [N m]", DIGITS, IN_MOMENT),
+    MT_R_COLUMN(hold_n, "hold [N]", DIGITS, IN_FORCE),
+    MT_R_COLUMN(residual, "residual", DIGITS, MT_IN_CSV),
+    MT_R_COLUMN(gap_m, "gap [m]", DIGITS, MT_IN_CSV),
+};
+static const mt_record_table point_rows = MT_R_TABLE_OF(point_record, point_columns);
+#undef THIS
+
+/* The sweep of one configuration. */
+typedef struct swept_row {
+    const char *configuration;
+    const char *joint;
+    const char *hold;
+    const char *spring;
+    int n;
+    point_row *points;
+} swept_row;
+
+#define THIS swept_row
+static const char *const holds[] = {"lock", "trim"};
+static const mt_field swept_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Its name."),
+    MT_F_TEXT("joint", joint, "The driven joint."),
+    MT_F_CHOICE("hold", hold, holds,
+                "What holds each position: a lock of the joint, or a spring that is trimmed."),
+    MT_F_TEXT_OR_NULL("spring", spring, "The spring that is trimmed; null: a lock holds."),
+    MT_F_LIST("points", points, n, point_row, point_record, "All positions, in their order."),
+};
+static const mt_record swept_record =
+    MT_F_RECORD_OF(swept_fields, "configuration", "A configuration, swept.");
+#undef THIS
+
+static joint_row *joint_rows_of(const sweep_view *v, const mt_sweep_point *p, mt_arena *mem,
+                                int *n)
 {
-    const mt_sweep_point *const p = &v->sweep.points[point];
-    mt_json_open(w, NULL, '{');
-    mt_json_put_number(w, driven(v)->angle ? "position_rad" : "position_m", p->drive);
-    if (p->status != MT_OK) {
-        mt_json_put_string(w, "error", p->why);
-        mt_json_close(w);
-        return;
-    }
-    mt_json_open(w, "joints", '[');
-    for (int i = 0; i < v->sys->n_joints; i++) {
+    joint_row *const out = mt_arena_alloc(mem, (size_t)v->sys->n_joints, sizeof *out);
+    for (int i = 0; out != NULL && i < v->sys->n_joints; i++) {
         const mt_system_joint *const joint = &v->sys->joints[i];
-        if (joint->coordinate < 0) {
-            continue;
+        if (joint->coordinate >= 0) {
+            out[(*n)++] = (joint_row){.name = joint->name,
+                                      .turns = joint->angle,
+                                      .slides = !joint->angle,
+                                      .coordinate = p->coordinate[i],
+                                      .ratio = p->ratio[i]};
         }
-        mt_json_open_flat(w, NULL, '{');
-        mt_json_put_string(w, "name", joint->name);
-        mt_json_put_number(w, joint->angle ? "coordinate_rad" : "coordinate_m",
-                           p->coordinate[i]);
-        mt_json_put_number(w, "ratio", p->ratio[i]);
-        mt_json_close(w);
     }
-    mt_json_close(w);
-    mt_json_put_number(w, hold_is_moment(v) ? "hold_n_m" : "hold_n", p->hold);
-    mt_json_put_number(w, "equilibrium_residual", p->residual);
-    mt_json_put_number(w, "gap_m", p->gap_m);
-    mt_cli_json_dead_centre(w, p->near);
-    if (v->rigid != NULL) {
-        mt_json_open_flat(w, "frequencies_hz", '[');
-        for (int i = 0; i < v->modes; i++) {
-            mt_json_put_number(w, NULL, v->hz[i + ((ptrdiff_t)point * v->modes)]);
-        }
-        mt_json_close(w);
-        mt_json_put_integer(w, "rigid_body_modes", v->rigid[point]);
-        mt_json_put_integer(w, "unstable_modes", v->unstable[point]);
-        mt_json_put_integer(w, "undecided_modes", v->undecided[point]);
-    }
-    mt_json_close(w);
+    return out;
 }
 
-static void sweep_json(const sweep_view *v, mt_json_writer *w)
+/* Without its lists. */
+static point_row point_row_of(const sweep_view *v, int point)
 {
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", v->configuration);
-    mt_json_put_string(w, "joint", driven(v)->name);
-    mt_json_put_string(w, "hold", v->sys->trim ? "trim" : "lock");
-    mt_json_put_string(w, "spring", v->sys->trim ? v->request->drive.spring : NULL);
-    mt_json_open(w, "points", '[');
-    for (int i = 0; i < v->sweep.n_points; i++) {
-        json_point(v, i, w);
+    const mt_sweep_point *const p = &v->sweep.points[point];
+    const bool reached = p->status == MT_OK;
+    const bool turns = driven(v)->angle;
+    const bool moment = hold_is_moment(v);
+    point_row row = {.turns = turns,
+                     .slides = !turns,
+                     .position_rad = p->drive,
+                     .position_m = p->drive,
+                     .error = p->why,
+                     .failed = !reached,
+                     .reached = reached,
+                     .holds_moment = reached && moment,
+                     .holds_force = reached && !moment,
+                     .hold_n_m = p->hold,
+                     .hold_n = p->hold,
+                     .residual = p->residual,
+                     .gap_m = p->gap_m,
+                     .with_modes = reached && v->rigid != NULL};
+    if (row.with_modes) {
+        row.n_hz = v->modes;
+        row.hz = v->hz + ((ptrdiff_t)point * v->modes);
+        row.rigid = v->rigid[point];
+        row.unstable = v->unstable[point];
+        row.undecided = v->undecided[point];
     }
-    mt_json_close(w);
-    mt_json_close(w);
+    return row;
+}
+
+/* Lists in mem. */
+static mt_status sweep_json(const sweep_view *v, mt_arena *mem, mt_json_writer *w, mt_err *err)
+{
+    swept_row row = {.configuration = v->configuration,
+                     .joint = driven(v)->name,
+                     .hold = holds[v->sys->trim ? 1 : 0],
+                     .spring = v->sys->trim ? v->request->drive.spring : NULL,
+                     .n = v->sweep.n_points};
+    row.points = mt_arena_alloc(mem, (size_t)row.n, sizeof *row.points);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < row.n; i++) {
+        const mt_sweep_point *const p = &v->sweep.points[i];
+        row.points[i] = point_row_of(v, i);
+        if (p->status == MT_OK) {
+            row.points[i].joints = joint_rows_of(v, p, mem, &row.points[i].n_joints);
+            row.points[i].dead_centre = mt_cli_dead_centre(p->near, mem);
+        }
+    }
+    MT_TRY(mt_arena_check(mem, err));
+    mt_record_put_object(w, NULL, &swept_record, &row, 0, NULL);
+    return MT_OK;
 }
 
 /* Columns, then rows of all points; two configurations with the same joints have the same
@@ -291,8 +425,7 @@ static void sweep_csv_columns(const sweep_view *v, mt_table *t)
 {
     char s[HEADING];
     mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
-    (void)mt_snprintf(s, sizeof s, "position_%s", drive_si_unit(driven(v)->angle));
-    mt_table_column(t, s, s, MT_ALIGN_POINT);
+    mt_table_record_columns(t, &point_rows, driven(v)->angle ? IN_TURNS : IN_SLIDES);
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const mt_system_joint *const joint = &v->sys->joints[i];
@@ -302,10 +435,8 @@ static void sweep_csv_columns(const sweep_view *v, mt_table *t)
             mt_table_column(t, s, s, MT_ALIGN_POINT);
         }
     }
-    (void)mt_snprintf(s, sizeof s, "%s", hold_is_moment(v) ? "hold_n_m" : "hold_n");
-    mt_table_column(t, s, s, MT_ALIGN_POINT);
-    mt_table_column(t, "residual", "equilibrium_residual", MT_ALIGN_POINT);
-    mt_table_column(t, "gap", "gap_m", MT_ALIGN_POINT);
+    mt_table_record_columns(t, &point_rows,
+                            MT_IN_CSV | (unsigned)(hold_is_moment(v) ? IN_MOMENT : IN_FORCE));
     for (int i = 0; i < v->modes; i++) {
         (void)mt_snprintf(s, sizeof s, "mode_%d_hz", i + 1);
         mt_table_column(t, s, s, MT_ALIGN_POINT);
@@ -314,19 +445,19 @@ static void sweep_csv_columns(const sweep_view *v, mt_table *t)
 
 static void sweep_csv_rows(const sweep_view *v, mt_table *t)
 {
+    const unsigned hold = hold_is_moment(v) ? IN_MOMENT : IN_FORCE;
     for (int k = 0; k < v->sweep.n_points; k++) {
         const mt_sweep_point *const p = &v->sweep.points[k];
+        const point_row row = point_row_of(v, k);
         mt_table_text(t, v->configuration);
-        mt_table_number(t, p->drive, DIGITS);
+        mt_table_record_row(t, &point_rows, row.turns ? IN_TURNS : IN_SLIDES, &row);
         for (int i = 0; i < v->sys->n_joints; i++) {
             if (told(v, i)) {
                 mt_table_number(t, p->coordinate[i], DIGITS);
                 mt_table_number(t, p->ratio[i], DIGITS);
             }
         }
-        mt_table_number(t, p->hold, DIGITS);
-        mt_table_number(t, p->residual, DIGITS);
-        mt_table_number(t, p->gap_m, DIGITS);
+        mt_table_record_row(t, &point_rows, MT_IN_CSV | hold, &row);
         for (int i = 0; i < v->modes; i++) {
             mt_table_number(t, v->hz[i + ((ptrdiff_t)k * v->modes)], DIGITS);
         }
@@ -588,7 +719,7 @@ static int show_configuration_sweep(sink *to, const mt_loaded_model *s, int c,
         code = write_missing(s, &j.v);
         switch (to->args->format) {
         case MT_FORMAT_JSON:
-            sweep_json(&j.v, &to->w);
+            rc = sweep_json(&j.v, &j.mem, &to->w, &err);
             break;
         case MT_FORMAT_CSV:
             rc = add_csv(to, &j.v, &err);
@@ -664,5 +795,6 @@ const mt_command mt_command_sweep = {
                "(default: "
                "6). If a limit position ends the range, the positions before it are printed, a "
                "message names the limit, and the exit status is 3.",
+    .answer = {&swept_record, MT_ANSWER_CONFIGURATIONS},
     .run = run_sweep,
 };

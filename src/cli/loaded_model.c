@@ -351,6 +351,33 @@ mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row 
     return mt_arena_check(mem, err);
 }
 
+#define THIS mt_dead_centre_row
+static const mt_field dead_centre_fields[] = {
+    MT_F_NUMBER("distance", distance, "About how far it is [rad, model lengths]."),
+    MT_F_NUMBER(
+        "independence", independence,
+        "How independent the equations of its joints are: about 1 far from a dead centre, "
+        "0 there."),
+    MT_F_TEXTS("joints", joints, n_joints, "Joints whose equations depend on each other there.",
+               .flat = true),
+};
+const mt_record mt_dead_centre_record =
+    MT_F_RECORD_OF(dead_centre_fields, "dead_centre", "A dead centre near a position.");
+#undef THIS
+
+mt_dead_centre_row *mt_cli_dead_centre(const mt_nearness *nearness, mt_arena *mem)
+{
+    mt_dead_centre_row *const out = nearness->near ? mt_arena_alloc(mem, 1, sizeof *out) : NULL;
+    if (out != NULL) {
+        const mt_joints_row joints = mt_joints_row_of(&nearness->joints, mem);
+        *out = (mt_dead_centre_row){.distance = nearness->distance,
+                                    .independence = nearness->independence,
+                                    .n_joints = joints.n,
+                                    .joints = joints.name};
+    }
+    return out;
+}
+
 void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
 {
     for (int i = 0; i < list->n; i++) {

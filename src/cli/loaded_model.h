@@ -101,6 +101,16 @@ mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem);
 /* Sets of joints whose equations depend on each other: *n of them, *out not NULL, in mem. */
 mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
                            mt_err *err);
+/* A dead centre near a position. */
+typedef struct mt_dead_centre_row {
+    double distance;
+    double independence;
+    int n_joints;
+    const char **joints;
+} mt_dead_centre_row;
+extern const mt_record mt_dead_centre_record;
+/* NULL: none is near. In mem, which remembers a shortage. */
+mt_dead_centre_row *mt_cli_dead_centre(const mt_nearness *nearness, mt_arena *mem);
 /* Member "dead_centre" of an open object: null, or the distance to one and the joints whose
  * equations become dependent there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);

@@ -45,6 +45,11 @@ LINES = {
         ["problems/stick.json", "--count", "1"],
         ["cranks.json"],
     ],
+    "sweep": [
+        ["slider.json", "--drive", "bore=-0.1:0.11715:5"],
+        ["tests/models/apart.json", "--drive", "root=0:0.1:2"],
+        ["tests/models/driven_rod.json", "--drive", "pivot=0:30*deg:3", "--modes", "--hold", "servo"],
+    ],
 }
 # What is of studies alone, or of several commands, and not seen in these lines as null, or as something else.
 EXCUSED = {
@@ -56,6 +61,18 @@ STANDING = {
     "bodies": [{"name": "bob", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 1]}],
     "joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0]}],
     "springs": [{"name": "k", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": 8}],
+}
+# A crank of 0.1 m, drawn upright, a rod of 0.3 m and a piston along x.
+SLIDER = {
+    "format": "modetune-model/1", "dimension": 2,
+    "points": {"pin": [0, 0.1], "end": ["sqrt(0.08)", 0]},
+    "bodies": [{"name": name, "mass_kg": 1, "inertia_kg_m2": 0.01, "centre": at} for name, at in (("crank", [0, 0]), ("rod", "pin"), ("piston", "end"))],
+    "joints": [
+        {"name": "shaft", "type": "revolute", "bodies": ["ground", "crank"], "at": [0, 0]},
+        {"name": "big_end", "type": "revolute", "bodies": ["crank", "rod"], "at": "pin"},
+        {"name": "small_end", "type": "revolute", "bodies": ["rod", "piston"], "at": "end"},
+        {"name": "bore", "type": "prismatic", "bodies": ["ground", "piston"], "at": "end", "axis": [1, 0]},
+    ],
 }
 
 # Parallel cranks, the last with a length of its own: no length but the drawn one closes the joints.
@@ -116,7 +133,7 @@ class Seen:
 
     def fits(self, part, value):
         part = self.schema["definitions"][part["$ref"].rsplit("/", 1)[1]] if "$ref" in part else part
-        return isinstance(value, dict) == ("properties" in part) and (not isinstance(value, dict) or set(part["required"]) <= set(value))
+        return isinstance(value, dict) == ("properties" in part) and (not isinstance(value, dict) or set(part.get("required", [])) <= set(value))
 
     def want(self, part=None, name=""):
         """What is to be seen."""
@@ -125,7 +142,7 @@ class Seen:
             for key, inner in part["properties"].items():
                 place = f"{name}/{key}" if name else key
                 self.all.add(place)
-                self.optional |= {place} if key not in part["required"] else set()
+                self.optional |= {place} if key not in part.get("required", []) else set()
                 kinds = inner.get("type", [])
                 self.nullable |= {place} if "null" in (kinds if isinstance(kinds, list) else [kinds]) or "if" in inner else set()
                 for below in (inner, inner.get("items", {}), inner.get("then", {})):
@@ -142,7 +159,8 @@ class Answers(unittest.TestCase):
         cls.folder = Path(cls.kept.name)
         for name in ("tests", "problems"):
             (cls.folder / name).symlink_to(SOURCE / name)
-        for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS)):
+        for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS),
+                            ("slider", SLIDER)):
             (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
         cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}
 

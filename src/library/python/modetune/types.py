@@ -13,7 +13,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
-    "CommandMac", "CommandModes", "CommandSensitivity",
+    "CommandMac", "CommandModes", "CommandSensitivity", "CommandSweep",
 ]
 
 
@@ -2262,6 +2262,61 @@ class CommandSensitivityNoDerivative(TypedDict):
     joints: List[str]
 
 
+class CommandSweepConfiguration(TypedDict):
+    """A configuration, swept."""
+
+    configuration: str
+    joint: str
+    hold: Literal["lock", "trim"]
+    spring: Optional[str]
+    points: List["CommandSweepPoint"]
+
+
+class CommandSweepFailed(TypedDict):
+    """A configuration without an answer."""
+
+    configuration: str
+    error: str
+
+
+class CommandSweepPoint(TypedDict, total=False):
+    """A position of the driven joint."""
+
+    position_rad: float
+    position_m: float
+    error: str
+    joints: List["CommandSweepJoint"]
+    hold_n_m: float
+    hold_n: float
+    equilibrium_residual: float
+    gap_m: float
+    dead_centre: Optional["CommandSweepDeadCentre"]
+    frequencies_hz: List[Optional[float]]
+    rigid_body_modes: int
+    unstable_modes: int
+    undecided_modes: int
+
+
+class _CommandSweepJointAlways(TypedDict):
+    name: str
+    ratio: float
+
+
+class CommandSweepJoint(_CommandSweepJointAlways, total=False):
+    """A joint with a coordinate at a position."""
+
+    coordinate_rad: float
+    coordinate_m: float
+
+
+class CommandSweepDeadCentre(TypedDict):
+    """A dead centre near a position."""
+
+    distance: float
+    independence: float
+    joints: List[str]
+
+
 ModelNumber = Union[float, str]
 ModelVector = List["ModelNumber"]
 ModelPosition = Union[str, "ModelVector"]
@@ -2286,4 +2341,8 @@ CommandModes = Union[
 CommandSensitivity = Union[
     List[Union["CommandSensitivityConfiguration", "CommandSensitivityFailed"]],
     "CommandSensitivityConfiguration", "CommandSensitivityFailed"
+]
+CommandSweep = Union[
+    List[Union["CommandSweepConfiguration", "CommandSweepFailed"]], "CommandSweepConfiguration",
+    "CommandSweepFailed"
 ]
