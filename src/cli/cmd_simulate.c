@@ -14,6 +14,7 @@
 #include "model/values.h"
 #include "report/table.h"
 #include "response/ports.h"
+#include "result/write.h"
 #include "simulate/reading.h"
 #include "simulate/signal.h"
 #include "simulate/start.h"
@@ -38,7 +39,8 @@ typedef struct sim_forced_response {
     double rms; /* RMS of the random parts over the duration [m/s^2] */
 } sim_forced_response;
 
-enum { SIM_SEED = 1 };
+enum { SIM_SEED = 1, AXES = 3 };
+static const char *const base_ports[AXES] = {"base.x", "base.y", "base.z"};
 
 /* The options of the command, resolved for a system. */
 typedef struct sim_request {
@@ -128,16 +130,10 @@ static mt_status sim_vibrate(const mt_args *args, mt_loaded_model *s, const mt_s
     return MT_OK;
 }
 
-static const char *axis_of(const sim_forced_response *s)
-{
-    static const char *const names[] = {"base.x", "base.y", "base.z"};
-    return names[s->axis];
-}
-
 static void sim_forced_response_print(const sim_forced_response *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
-    mt_text_addf(out, "  %s is shaken by %s", axis_of(s), mt_vibrated_name(v));
+    mt_text_addf(out, "  %s is shaken by %s", base_ports[s->axis], mt_vibrated_name(v));
     if (v->n_random > 0) {
         mt_text_addf(
             out,
@@ -149,27 +145,51 @@ static void sim_forced_response_print(const sim_forced_response *s, mt_text *out
     mt_vibrated_marks(v, out);
 }
 
-/* Member "vibration" of an open object. */
-static void sim_forced_response_json(const sim_forced_response *s, mt_json_writer *w)
+/* The same for JSON. */
+typedef struct shaken_row {
+    const char *file;
+    const char *name;
+    const char *port;
+    long seed;
+    double rms_m_per_s2;
+    double realised_rms_m_per_s2;
+    mt_combined_row combine;
+    int n_marks;
+    const char **marks;
+} shaken_row;
+
+#define THIS shaken_row
+static const mt_field shaken_fields[] = {
+    MT_F_TEXT("file", file, "The profile's file."),
+    MT_F_TEXT_OR_NULL("name", name, "Its name."),
+    MT_F_CHOICE("port", port, base_ports, "The direction in which the ground moves."),
+    MT_F_LONG("seed", seed, "Seed of the realisation, from --seed."),
+    MT_F_NUMBER("rms_m_per_s2", rms_m_per_s2, "RMS of its random parts in the profile."),
+    MT_F_NUMBER("realised_rms_m_per_s2", realised_rms_m_per_s2, "RMS in this realisation."),
+    MT_F_RECORD("combine", combine, mt_combined_row, mt_combined_record, NULL),
+    MT_F_TEXTS("marks", marks, n_marks, "What is assumed in the profile, or unconfirmed."),
+};
+static const mt_record shaken_record =
+    MT_F_RECORD_OF(shaken_fields, NULL, "A profile that shakes the ground.");
+#undef THIS
+
+static shaken_row shaken_row_of(const sim_forced_response *s)
 {
-    mt_json_open(w, "vibration", '{');
-    mt_json_put_string(w, "file", s->v->path);
-    mt_json_put_string(w, "name", s->v->name);
-    mt_json_put_string(w, "port", axis_of(s));
-    mt_json_put_integer(w, "seed", (long)s->seed);
-    mt_json_put_number(w, "rms_m_per_s2", mt_vibration_rms(s->v));
-    mt_json_put_number(w, "realised_rms_m_per_s2", s->rms);
-    mt_vibrated_rule_json(w, s->v);
-    mt_json_close(w);
+    return (shaken_row){.file = s->v->path,
+                        .name = s->v->name,
+                        .port = base_ports[s->axis],
+                        .seed = (long)s->seed,
+                        .rms_m_per_s2 = mt_vibration_rms(s->v),
+                        .realised_rms_m_per_s2 = s->rms,
+                        .combine = mt_combined_row_of(s->v),
+                        .n_marks = s->v->n_marks,
+                        .marks = s->v->marks};
 }
 
 /* The options of `simulate` in the words of a system. */
 
 /* Lines of the result in a period of a sine, so that its harmonics are told apart. */
 enum { STEADY_SAMPLES = 24 };
-enum { AXES = 3 };
-static const char *const base_ports[AXES] = {"base.x", "base.y", "base.z"};
-
 /* A port of an input: what stands before '='. */
 typedef struct input_port {
     mt_sim_push push;
@@ -655,12 +675,12 @@ static const double STEADY = 0.05;
 static const double WEAK = 1e-4;
 enum { TONES_SHOWN = 4 };
 
-/* Value of an output at a sample. */
-static double seen(const sim_view *v, int output, int sample)
+/* Values of an output, n_gauges apart. */
+static double *values_of(const sim_view *v, int output)
 {
     const sim_output *const o = &v->request->outputs[output];
-    const double *const of[] = {v->r->value, v->r->speed, v->r->acceleration};
-    return of[o->what][o->gauge + ((ptrdiff_t)sample * v->r->n_gauges)];
+    double *const of[] = {v->r->value, v->r->speed, v->r->acceleration};
+    return of[o->what] + o->gauge;
 }
 
 static const char *motion_output_unit(const sim_output *o)
@@ -678,43 +698,290 @@ static void member_of(const sim_view *v, const sim_output *o, char text[HEADING]
                       units[o->angle ? 1 : 0][o->what]);
 }
 
+/* What is told, as records. */
+
+/* What one --output shows. */
+typedef struct output_row {
+    const char *port;
+    const char *unit;
+    int n;
+    int step; /* between values */
+    double *values;
+} output_row;
+
+#define THIS output_row
+static const char *const output_units[] = {"m", "m/s", "m/s^2", "rad", "rad/s", "rad/s^2"};
+static const mt_field output_fields[] = {
+    MT_F_TEXT("port", port, "As --output gives it."),
+    MT_F_CHOICE("unit", unit, output_units, "Unit of its values."),
+    MT_F_NUMBERS("values", values, n, "Its value at each time.", MT_F_EVERY(step)),
+};
+static const mt_record output_record =
+    MT_F_RECORD_OF(output_fields, "output", "A quantity over time.");
+#undef THIS
+
+/* The turns of a free motion. */
+#define THIS mt_ring
+static const mt_field ring_fields[] = {
+    MT_F_COUNT("periods", periods, 0,
+               "Periods between the first and the last maximum; 0: none."),
+    MT_F_NUMBER_OR_NULL("frequency_hz", hz, "Frequency of the mean period; null: none."),
+    MT_F_NUMBER_OR_NULL("spread", spread,
+                        "Longest less shortest period, as a part of the mean: 0 of one "
+                        "frequency; null: no period."),
+    MT_F_NUMBER_OR_NULL("amplitude", amplitude,
+                        "Half of the first swing, in the unit of the port; null: none."),
+    MT_F_NUMBER_OR_NULL("damping_ratio", damping,
+                        "Damping ratio by the decrease of the swings; null: fewer than two."),
+};
+static const mt_record ring_record =
+    MT_F_RECORD_OF(ring_fields, NULL, "What the turns of a free motion show.");
+#undef THIS
+
+#define THIS mt_tone
+static const mt_field tone_fields[] = {
+    MT_F_NUMBER("frequency_hz", hz, "Frequency of its oscillation."),
+    MT_F_NUMBER("damping_ratio", damping, "Its damping ratio."),
+    MT_F_NUMBER("amplitude", amplitude, "Its amplitude at the beginning, in the port's unit."),
+    MT_F_NUMBER("phase_rad", phase, "Its phase at the beginning."),
+};
+static const mt_record tone_record =
+    MT_F_RECORD_OF(tone_fields, "tone", "A decaying oscillation in a free motion.");
+#undef THIS
+
+/* The motion under one sine. */
+typedef struct steady_row {
+    int periods;
+    double hz;
+    double mean;
+    int n;
+    double *amplitudes;
+    double *phases;
+    double residual;
+} steady_row;
+
+#define THIS steady_row
+static const mt_field steady_fields[] = {
+    MT_F_COUNT("periods", periods, 0,
+               "Whole periods at the end of the motion that it is read from; 0: too short, all "
+               "else is 0."),
+    MT_F_NUMBER("frequency_hz", hz, "Frequency of the sine."),
+    MT_F_NUMBER("mean", mean, "Mean, in the unit of the port."),
+    MT_F_NUMBERS("amplitudes", amplitudes, n,
+                 "Amplitudes of the sine's frequency and its multiples, in the port's unit."),
+    MT_F_NUMBERS("phases_rad", phases, n, "Their phases."),
+    MT_F_NUMBER("residual", residual,
+                "Largest difference of the motion and their sum, as a part of the largest "
+                "amplitude."),
+};
+static const mt_record steady_record =
+    MT_F_RECORD_OF(steady_fields, NULL, "The steady motion under one sine.");
+#undef THIS
+
+/* What the motion of a port shows. */
+typedef struct reading_row {
+    const char *port;
+    const char *unit;
+    bool with_ring; /* of a free motion */
+    mt_ring ring;
+    int n_tones;
+    mt_tone *tones;
+    double tones_residual;
+    bool with_steady; /* under one sine */
+    steady_row steady;
+} reading_row;
+
+#define THIS reading_row
+static const char *const reading_units[] = {"m", "rad"};
+static const mt_field reading_fields[] = {
+    MT_F_TEXT("port", port, "The port, without what of it an output shows."),
+    MT_F_CHOICE("unit", unit, reading_units, "Its unit."),
+    MT_F_RECORD("turnings", ring, mt_ring, ring_record,
+                "Of a free motion: what its turns show.", MT_F_WHEN(with_ring)),
+    MT_F_LIST("tones", tones, n_tones, mt_tone, tone_record,
+              "Of a free motion: the oscillations that it is the sum of, strongest first.",
+              .flat = true, MT_F_WHEN(with_ring)),
+    MT_F_NUMBER_OR_NULL(
+        "tones_residual", tones_residual,
+        "Largest difference of the motion and that sum, as a part of its largest "
+        "distance from the mean; null: too short.",
+        MT_F_WHEN(with_ring)),
+    MT_F_RECORD("steady", steady, steady_row, steady_record,
+                "Under one --sine: its steady motion.", MT_F_WHEN(with_steady)),
+};
+static const mt_record reading_record =
+    MT_F_RECORD_OF(reading_fields, "reading", "What the motion of a port shows.");
+#undef THIS
+
+/* A motion. */
+typedef struct motion_row {
+    const char *configuration;
+    bool complete;
+    mt_sim_method method;
+    double tolerance;
+    bool is_shaken;
+    shaken_row vibration;
+    int n;
+    double *time_s;
+    int n_outputs;
+    output_row *outputs;
+    double *kinetic_j;
+    double *potential_j;
+    double *work_j;
+    double energy_scale_j;
+    double energy_error_j;
+    double joint_drift_m;
+    double joint_gap_m;
+    long steps;
+    long stiff_steps;
+    long rejected_steps;
+    long evaluations;
+    bool is_linear;
+    double equations_residual;
+    double input_error;
+    int n_readings;
+    reading_row *readings;
+} motion_row;
+
+#define THIS motion_row
+static const mt_field motion_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Its name."),
+    MT_F_FLAG("complete", complete, "It was not stopped before --duration."),
+    MT_F_ENUM(
+        "method", method, mt_sim_method, mt_sim_method_names,
+        "\"integrated\": in steps with an estimated error; of linear equations \"exact\": by "
+        "the matrix exponential, or \"fitted\": so, with inputs as polynomials."),
+    MT_F_NUMBER("tolerance", tolerance, "Allowed error of a step, relative."),
+    MT_F_RECORD("vibration", vibration, shaken_row, shaken_record,
+                "With --vibration: the profile that shakes the ground.", MT_F_WHEN(is_shaken)),
+    MT_F_NUMBERS("time_s", time_s, n, "Times of all values."),
+    MT_F_LIST("outputs", outputs, n_outputs, output_row, output_record,
+              "What each --output shows."),
+    MT_F_NUMBERS("kinetic_j", kinetic_j, n, "Kinetic energy."),
+    MT_F_NUMBERS("potential_j", potential_j, n, "Potential energy, from the rest position."),
+    MT_F_NUMBERS("work_j", work_j, n, "Work of inputs, less that absorbed by dampers."),
+    MT_F_NUMBER("energy_scale_j", energy_scale_j,
+                "Largest kinetic energy or change of potential energy."),
+    MT_F_NUMBER("energy_error_j", energy_error_j, "Largest error of the balance of energy."),
+    MT_F_NUMBER("joint_drift_m", joint_drift_m,
+                "Largest drift off a joint in a step, before it was corrected."),
+    MT_F_NUMBER("joint_gap_m", joint_gap_m, "Largest gap of a joint after that."),
+    MT_F_LONG("steps", steps, "Steps."),
+    MT_F_LONG("stiff_steps", stiff_steps,
+              "Of these, with fast vibrations of stiff springs solved beforehand."),
+    MT_F_LONG("rejected_steps", rejected_steps, "Steps that were repeated with a smaller one."),
+    MT_F_LONG("evaluations", evaluations, "Evaluations of the equations of motion."),
+    MT_F_NUMBER(
+        "equations_residual", equations_residual,
+        "Of linear equations: what the motion leaves of the whole equations, relative to "
+        "their largest force.",
+        MT_F_WHEN(is_linear)),
+    MT_F_NUMBER(
+        "input_error", input_error,
+        "Of linear equations: what fitted inputs miss, relative to their largest value.",
+        MT_F_WHEN(is_linear)),
+    MT_F_LIST("readings", readings, n_readings, reading_row, reading_record,
+              "What the motion of each port shows."),
+};
+static const mt_record motion_record = MT_F_RECORD_OF(motion_fields, NULL, NULL);
+enum { IN_CSV_BEHIND = MT_IN_OWN }; /* behind the outputs */
+static const mt_record_column motion_columns[] = {
+    MT_R_COLUMN(time_s, "time [s]", DIGITS, MT_IN_TABLES),
+    MT_R_COLUMN(kinetic_j, "kinetic energy [J]", DIGITS, IN_CSV_BEHIND),
+    MT_R_COLUMN(potential_j, "potential energy [J]", DIGITS, IN_CSV_BEHIND),
+    MT_R_COLUMN(work_j, "work [J]", DIGITS, IN_CSV_BEHIND),
+};
+static const mt_record_table motion_rows = MT_R_TABLE_OF(motion_record, motion_columns);
+#undef THIS
+
+static output_row output_row_of(const sim_view *v, int k)
+{
+    const sim_output *const o = &v->request->outputs[k];
+    return (output_row){.port = o->port,
+                        .unit = motion_output_unit(o),
+                        .n = v->r->n,
+                        .step = v->r->n_gauges,
+                        .values = values_of(v, k)};
+}
+
+static reading_row reading_row_of(const sim_view *v, int i)
+{
+    sim_reading *const g = &v->readings[i];
+    return (reading_row){.port = g->name,
+                         .unit = reading_units[g->angle ? 1 : 0],
+                         .with_ring = v->free,
+                         .ring = g->ring,
+                         .n_tones = g->tones.n,
+                         .tones = g->tones.tone,
+                         .tones_residual = g->tones.residual,
+                         .with_steady = v->request->steady_hz > 0.0,
+                         .steady = {.periods = g->steady.periods,
+                                    .hz = v->request->steady_hz,
+                                    .mean = g->steady.mean,
+                                    .n = MT_HARMONICS,
+                                    .amplitudes = g->steady.amplitude,
+                                    .phases = g->steady.phase,
+                                    .residual = g->steady.residual}};
+}
+
+/* Without its lists of records. */
+static motion_row motion_row_of(const sim_view *v)
+{
+    const mt_sim_result *const r = v->r;
+    return (motion_row){.configuration = v->configuration,
+                        .complete = r->stop == MT_SIM_DONE,
+                        .method = r->method,
+                        .tolerance = v->request->opt.tolerance,
+                        .is_shaken = v->request->forced_response.v != NULL,
+                        .n = r->n,
+                        .time_s = r->t,
+                        .kinetic_j = r->kinetic,
+                        .potential_j = r->potential,
+                        .work_j = r->work,
+                        .energy_scale_j = r->energy_scale_j,
+                        .energy_error_j = r->energy_error_j,
+                        .joint_drift_m = r->gap_m,
+                        .joint_gap_m = r->left_m,
+                        .steps = r->steps,
+                        .stiff_steps = r->stiff_steps,
+                        .rejected_steps = r->rejected,
+                        .evaluations = r->evaluations,
+                        .is_linear = r->method != MT_SIM_INTEGRATED,
+                        .equations_residual = r->fit.residual,
+                        .input_error = r->fit.input_error};
+}
+
 static void make_motion_columns(const sim_view *v, bool csv, mt_table *t)
 {
     char heading[HEADING];
     char member[HEADING];
-    mt_table_column(t, "time [s]", "time_s", MT_ALIGN_POINT);
+    mt_table_record_columns(t, &motion_rows, MT_IN_TABLES);
     for (int k = 0; k < v->request->n_outputs; k++) {
         const sim_output *const o = &v->request->outputs[k];
         (void)mt_snprintf(heading, sizeof heading, "%s [%s]", o->port, motion_output_unit(o));
         member_of(v, o, member);
         mt_table_column(t, heading, member, MT_ALIGN_POINT);
     }
-    if (csv) {
-        mt_table_column(t, "kinetic energy", "kinetic_j", MT_ALIGN_POINT);
-        mt_table_column(t, "potential energy", "potential_j", MT_ALIGN_POINT);
-        mt_table_column(t, "work", "work_j", MT_ALIGN_POINT);
-    }
+    mt_table_record_columns(t, &motion_rows, csv ? IN_CSV_BEHIND : 0U);
 }
 
-static void row(const sim_view *v, int i, bool csv, mt_table *t)
+/* Sample i. */
+static void add_sample(const sim_view *v, const motion_row *row, int i, bool csv, mt_table *t)
 {
-    mt_table_number(t, v->r->t[i], DIGITS);
+    mt_table_record_nth(t, &motion_rows, MT_IN_TABLES, row, i);
     for (int k = 0; k < v->request->n_outputs; k++) {
-        mt_table_number(t, seen(v, k, i), DIGITS);
+        mt_table_number(t, values_of(v, k)[(ptrdiff_t)i * v->r->n_gauges], DIGITS);
     }
-    if (csv) {
-        mt_table_number(t, v->r->kinetic[i], DIGITS);
-        mt_table_number(t, v->r->potential[i], DIGITS);
-        mt_table_number(t, v->r->work[i], DIGITS);
-    }
+    mt_table_record_nth(t, &motion_rows, csv ? IN_CSV_BEHIND : 0U, row, i);
 }
 
 static void simulate_csv(const sim_view *v, mt_text *out)
 {
     mt_table t = mt_table_default();
+    const motion_row row = motion_row_of(v);
     make_motion_columns(v, true, &t);
-    for (int i = 0; i < v->r->n; i++) {
-        row(v, i, true, &t);
+    for (int i = 0; i < row.n; i++) {
+        add_sample(v, &row, i, true, &t);
     }
     mt_table_csv(&t, out);
     mt_table_free(&t);
@@ -805,10 +1072,11 @@ static void simulate_print(const sim_view *v, mt_text *out)
     const mt_sim_result *const r = v->r;
     mt_table t = mt_table_default();
     const int every = ((r->n - 1) / (LINES_MOST - 1)) + ((r->n - 1) % (LINES_MOST - 1) != 0);
+    const motion_row row = motion_row_of(v);
     make_motion_columns(v, false, &t);
     for (int i = 0; i < r->n; i++) {
         if (every == 0 || i % every == 0 || i + 1 == r->n) {
-            row(v, i, false, &t);
+            add_sample(v, &row, i, false, &t);
         }
     }
     mt_text_addf(out, "%s\n", v->configuration);
@@ -832,116 +1100,26 @@ static void simulate_print(const sim_view *v, mt_text *out)
     write_method(v, out);
 }
 
-static void json_list(mt_json_writer *w, const char *name, int n, const double *x)
+/* Lists in mem. */
+static mt_status simulate_json(const sim_view *v, mt_arena *mem, mt_json_writer *w, mt_err *err)
 {
-    mt_json_open_flat(w, name, '[');
-    for (int i = 0; i < n; i++) {
-        mt_json_put_number(w, NULL, x[i]);
+    motion_row row = motion_row_of(v);
+    row.n_outputs = v->request->n_outputs;
+    row.n_readings = v->r->n_gauges;
+    row.outputs = mt_arena_alloc(mem, (size_t)row.n_outputs, sizeof *row.outputs);
+    row.readings = mt_arena_alloc(mem, (size_t)row.n_readings, sizeof *row.readings);
+    MT_TRY(mt_arena_check(mem, err));
+    if (row.is_shaken) {
+        row.vibration = shaken_row_of(&v->request->forced_response);
     }
-    mt_json_close(w);
-}
-
-static void json_outputs(const sim_view *v, mt_json_writer *w)
-{
-    mt_json_open(w, "outputs", '[');
-    for (int k = 0; k < v->request->n_outputs; k++) {
-        const sim_output *const o = &v->request->outputs[k];
-        mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "port", o->port);
-        mt_json_put_string(w, "unit", motion_output_unit(o));
-        mt_json_open_flat(w, "values", '[');
-        for (int i = 0; i < v->r->n; i++) {
-            mt_json_put_number(w, NULL, seen(v, k, i));
-        }
-        mt_json_close(w);
-        mt_json_close(w);
+    for (int k = 0; k < row.n_outputs; k++) {
+        row.outputs[k] = output_row_of(v, k);
     }
-    mt_json_close(w);
-}
-
-static void json_free(const sim_reading *g, mt_json_writer *w)
-{
-    mt_json_open(w, "turnings", '{');
-    mt_json_put_integer(w, "periods", g->ring.periods);
-    mt_json_put_number(w, "frequency_hz", g->ring.hz);
-    mt_json_put_number(w, "spread", g->ring.spread);
-    mt_json_put_number(w, "amplitude", g->ring.amplitude);
-    mt_json_put_number(w, "damping_ratio", g->ring.damping);
-    mt_json_close(w);
-    mt_json_open(w, "tones", '[');
-    for (int k = 0; k < g->tones.n; k++) {
-        mt_json_open_flat(w, NULL, '{');
-        mt_json_put_number(w, "frequency_hz", g->tones.tone[k].hz);
-        mt_json_put_number(w, "damping_ratio", g->tones.tone[k].damping);
-        mt_json_put_number(w, "amplitude", g->tones.tone[k].amplitude);
-        mt_json_put_number(w, "phase_rad", g->tones.tone[k].phase);
-        mt_json_close(w);
+    for (int i = 0; i < row.n_readings; i++) {
+        row.readings[i] = reading_row_of(v, i);
     }
-    mt_json_close(w);
-    mt_json_put_number(w, "tones_residual", g->tones.residual);
-}
-
-static void json_steady(const sim_view *v, const sim_reading *g, mt_json_writer *w)
-{
-    mt_json_open(w, "steady", '{');
-    mt_json_put_integer(w, "periods", g->steady.periods);
-    mt_json_put_number(w, "frequency_hz", v->request->steady_hz);
-    mt_json_put_number(w, "mean", g->steady.mean);
-    json_list(w, "amplitudes", MT_HARMONICS, g->steady.amplitude);
-    json_list(w, "phases_rad", MT_HARMONICS, g->steady.phase);
-    mt_json_put_number(w, "residual", g->steady.residual);
-    mt_json_close(w);
-}
-
-static void json_readings(const sim_view *v, mt_json_writer *w)
-{
-    mt_json_open(w, "readings", '[');
-    for (int i = 0; i < v->r->n_gauges; i++) {
-        const sim_reading *const g = &v->readings[i];
-        mt_json_open(w, NULL, '{');
-        mt_json_put_string(w, "port", g->name);
-        mt_json_put_string(w, "unit", g->angle ? "rad" : "m");
-        if (v->free) {
-            json_free(g, w);
-        }
-        if (v->request->steady_hz > 0.0) {
-            json_steady(v, g, w);
-        }
-        mt_json_close(w);
-    }
-    mt_json_close(w);
-}
-
-static void simulate_json(const sim_view *v, mt_json_writer *w)
-{
-    const mt_sim_result *const r = v->r;
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", v->configuration);
-    mt_json_put_bool(w, "complete", r->stop == MT_SIM_DONE);
-    mt_json_put_string(w, "method", mt_sim_method_name(r->method));
-    mt_json_put_number(w, "tolerance", v->request->opt.tolerance);
-    if (v->request->forced_response.v != NULL) {
-        sim_forced_response_json(&v->request->forced_response, w);
-    }
-    json_list(w, "time_s", r->n, r->t);
-    json_outputs(v, w);
-    json_list(w, "kinetic_j", r->n, r->kinetic);
-    json_list(w, "potential_j", r->n, r->potential);
-    json_list(w, "work_j", r->n, r->work);
-    mt_json_put_number(w, "energy_scale_j", r->energy_scale_j);
-    mt_json_put_number(w, "energy_error_j", r->energy_error_j);
-    mt_json_put_number(w, "joint_drift_m", r->gap_m);
-    mt_json_put_number(w, "joint_gap_m", r->left_m);
-    mt_json_put_integer(w, "steps", r->steps);
-    mt_json_put_integer(w, "stiff_steps", r->stiff_steps);
-    mt_json_put_integer(w, "rejected_steps", r->rejected);
-    mt_json_put_integer(w, "evaluations", r->evaluations);
-    if (r->method != MT_SIM_INTEGRATED) {
-        mt_json_put_number(w, "equations_residual", r->fit.residual);
-        mt_json_put_number(w, "input_error", r->fit.input_error);
-    }
-    json_readings(v, w);
-    mt_json_close(w);
+    mt_record_put_object(w, NULL, &motion_record, &row, 0, NULL);
+    return MT_OK;
 }
 
 /* The command. */
@@ -1172,13 +1350,15 @@ static mt_status run_motion(job *j, mt_err *err)
     return read_all(j, err);
 }
 
-static int print_motion(const job *j, mt_text *out)
+static int print_motion(job *j, mt_text *out)
 {
     mt_json_writer w = mt_json_writer_default(out);
+    mt_err err = {.code = MT_OK};
+    mt_status rc = MT_OK;
     switch (j->args->format) {
     case MT_FORMAT_JSON:
-        simulate_json(&j->view, &w);
-        return mt_cli_json_done(&w);
+        rc = simulate_json(&j->view, &j->mem, &w, &err);
+        return rc == MT_OK ? mt_cli_json_done(&w) : mt_cli_failed(rc, &err);
     case MT_FORMAT_CSV:
         simulate_csv(&j->view, out);
         return MT_EXIT_DONE;
@@ -1274,5 +1454,6 @@ const mt_command mt_command_simulate = {
         "After an interrupt (Ctrl-C), or at the end of --time, the motion so far is "
         "printed, and the exit status is 130 or 1. The exit status is 3 if the motion "
         "reaches a dead centre, or if an input acts in a direction without mass.",
+    .answer = {&motion_record, MT_ANSWER_ONE},
     .run = run_simulate,
 };

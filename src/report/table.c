@@ -209,6 +209,7 @@ static mt_align align_of(const mt_field *f)
         return MT_ALIGN_RIGHT;
     case MT_FIELD_NUMBER:
     case MT_FIELD_VALUE:
+    case MT_FIELD_NUMBERS:
         return MT_ALIGN_POINT;
     case MT_FIELD_FORMAT:
     case MT_FIELD_TEXT:
@@ -219,7 +220,6 @@ static mt_align align_of(const mt_field *f)
     case MT_FIELD_OPTION:
     case MT_FIELD_LIST:
     case MT_FIELD_TEXTS:
-    case MT_FIELD_NUMBERS:
     case MT_FIELD_BY_VARIABLE:
     case MT_FIELD_TYPE_COUNT:
         break;
@@ -265,9 +265,10 @@ static void add_count(mt_table *t, const mt_field *f, int value)
 }
 
 static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f,
-                     const void *item)
+                     const void *item, int i)
 {
     const void *const at = (const char *)item + f->offset;
+    const double *numbers = NULL;
     const char *word = NULL;
     switch (f->type) {
     case MT_FIELD_TEXT:
@@ -285,6 +286,10 @@ static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f,
             add_number(t, c, *(const double *)at);
         }
         return;
+    case MT_FIELD_NUMBERS:
+        numbers = mt_record_get_pointer(at);
+        add_number(t, c, numbers[i]);
+        return;
     case MT_FIELD_COUNT:
         add_count(t, f, *(const int *)at);
         return;
@@ -300,7 +305,6 @@ static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f,
     case MT_FIELD_OPTION:
     case MT_FIELD_LIST:
     case MT_FIELD_TEXTS:
-    case MT_FIELD_NUMBERS:
     case MT_FIELD_BY_VARIABLE:
     case MT_FIELD_TYPE_COUNT:
         break;
@@ -308,14 +312,20 @@ static void add_cell(mt_table *t, const mt_record_column *c, const mt_field *f,
     t->failed = true; /* no cell holds these: no table has them */
 }
 
-void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, const void *item)
+void mt_table_record_nth(mt_table *t, const mt_record_table *of, unsigned in, const void *item,
+                         int i)
 {
     for (int k = 0; k < of->n; k++) {
         const mt_record_column *const c = &of->columns[k];
         if ((c->in & in) != 0U) {
-            add_cell(t, c, field_of(of, c), item);
+            add_cell(t, c, field_of(of, c), item, i);
         }
     }
+}
+
+void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, const void *item)
+{
+    mt_table_record_nth(t, of, in, item, 0);
 }
 
 /* A number as this program and others write it: [+-] digits [. digits] [e [+-] digits]. */

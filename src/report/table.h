@@ -113,6 +113,9 @@ typedef struct mt_record_table {
  * values, counts and flags. */
 void mt_table_record_columns(mt_table *t, const mt_record_table *of, unsigned in);
 void mt_table_record_row(mt_table *t, const mt_record_table *of, unsigned in, const void *item);
+/* The same; of lists of numbers the cell of item i. */
+void mt_table_record_nth(mt_table *t, const mt_record_table *of, unsigned in, const void *item,
+                         int i);
 
 /* Heading, rule, rows; two blanks between columns, `indent` before the first, none after the
  * last. Empty columns other than the first are left out; columns beyond `width` (0: unlimited)

@@ -75,6 +75,10 @@ typedef struct mt_field {
      * true. */
     bool logical;
     size_t truth;
+    /* Of numbers that are written and never read: they stand as far apart as the int at `step`
+     * says. */
+    bool strided;
+    size_t step;
 } mt_field;
 
 struct mt_record {
@@ -97,6 +101,7 @@ struct mt_record {
     .name = (json), .type = (kind), .nullable = (or_null), .offset = MT_F_MEMBER(of, m)
 #define MT_F_TRUTH(m)     .logical = true, .truth = MT_F_MEMBER(bool, m)
 #define MT_F_ONE_OF(list) .choices = (list), .n_choices = MT_COUNT(list)
+#define MT_F_EVERY(m)     .strided = true, .step = MT_F_MEMBER(int, m)
 #define MT_F_WHEN(m)      .optional = true, .when = MT_F_MEMBER(bool, m)
 
 #define MT_F_FORMAT(json, value, ...)                                                   \

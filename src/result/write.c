@@ -46,14 +46,16 @@ static void put_texts(mt_json_writer *w, const mt_field *f, const char *const *i
     mt_json_close(w);
 }
 
-static void put_numbers(mt_json_writer *w, const mt_field *f, const double *items, int n)
+static void put_numbers(mt_json_writer *w, const mt_field *f, const double *items, int n,
+                        int step)
 {
     mt_json_open_flat(w, f->name, '[');
     for (int i = 0; i < n; i++) {
+        const double value = items[(ptrdiff_t)i * step];
         if (f->digits > 0) {
-            mt_json_put_rounded(w, NULL, items[i], f->digits);
+            mt_json_put_rounded(w, NULL, value, f->digits);
         } else {
-            mt_json_put_number(w, NULL, items[i]);
+            mt_json_put_number(w, NULL, value);
         }
     }
     mt_json_close(w);
@@ -146,7 +148,8 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         put_texts(w, f, mt_record_get_pointer(at), *(const int *)other);
         break;
     case MT_FIELD_NUMBERS:
-        put_numbers(w, f, mt_record_get_pointer(at), *(const int *)other);
+        put_numbers(w, f, mt_record_get_pointer(at), *(const int *)other,
+                    f->strided ? *(const int *)((const char *)item + f->step) : 1);
         break;
     case MT_FIELD_BY_VARIABLE:
         put_by_variable(w, f->name, mt_record_get_pointer(at), variables);

@@ -51,13 +51,8 @@ static const double TOLERANCE = 1e-11;
 static const double TURN_FOUND = 1e-11;
 enum { TURN_STEPS = 6 };
 
-const char *mt_sim_method_name(mt_sim_method method)
-{
-    static const char *const names[MT_SIM_METHODS] = {[MT_SIM_INTEGRATED] = "integrated",
-                                                      [MT_SIM_EXACT] = "exact",
-                                                      [MT_SIM_FITTED] = "fitted"};
-    return names[method];
-}
+const char *const mt_sim_method_names[MT_SIM_METHODS] = {
+    [MT_SIM_INTEGRATED] = "integrated", [MT_SIM_EXACT] = "exact", [MT_SIM_FITTED] = "fitted"};
 
 mt_sim_options mt_sim_options_default(void)
 {

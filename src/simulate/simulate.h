@@ -51,7 +51,7 @@ typedef enum mt_sim_method {
     MT_SIM_FITTED, /* linear equations, inputs as polynomials in each step */
     MT_SIM_METHODS
 } mt_sim_method;
-const char *mt_sim_method_name(mt_sim_method method); /* "integrated", "exact", "fitted" */
+extern const char *const mt_sim_method_names[MT_SIM_METHODS];
 
 /* The check of a motion that was not integrated against the full equations at some samples. */
 typedef struct mt_sim_fit {

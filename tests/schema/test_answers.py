@@ -45,6 +45,14 @@ LINES = {
         ["problems/stick.json", "--count", "1"],
         ["cranks.json"],
     ],
+    "simulate": [
+        ["tests/models/pendulum.json", "-c", "hanging", "--start", "pivot=0.5", "--duration", "8"],
+        ["tests/models/pendulum.json", "-c", "hanging", "--start", "pivot=0.5", "--duration", "0.01", "--dt-out", "0.005"],
+        ["tests/models/pendulum.json", "-c", "hanging", "--sine", "base.x=0.1@0.5", "--duration", "8"],
+        ["tests/models/pendulum.json", "-c", "hanging", "--sine", "base.x=0.1@0.5", "--duration", "0.1"],
+        ["problems/den_hartog.json", "--vibration", "base.x=shaken.json", "--duration", "0.5"],
+        ["problems/den_hartog.json", "--vibration", "base.x=gevs_qualification", "--duration", "0.1"],
+    ],
     "sweep": [
         ["slider.json", "--drive", "bore=-0.1:0.11715:5"],
         ["tests/models/apart.json", "--drive", "root=0:0.1:2"],
@@ -74,6 +82,8 @@ SLIDER = {
         {"name": "bore", "type": "prismatic", "bodies": ["ground", "piston"], "at": "end", "axis": [1, 0]},
     ],
 }
+# A tone without more.
+SHAKEN = {"format": "modetune-profile/1", "tones": [{"frequency_hz": [16, 19], "acceleration_g": 1.5, "origin": "assumed"}]}
 
 # Parallel cranks, the last with a length of its own: no length but the drawn one closes the joints.
 CRANKS = {
@@ -160,7 +170,7 @@ class Answers(unittest.TestCase):
         for name in ("tests", "problems"):
             (cls.folder / name).symlink_to(SOURCE / name)
         for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS),
-                            ("slider", SLIDER)):
+                            ("slider", SLIDER), ("shaken", SHAKEN)):
             (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
         cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}
 

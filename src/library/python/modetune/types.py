@@ -13,7 +13,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
-    "CommandMac", "CommandModes", "CommandSensitivity", "CommandSweep",
+    "CommandMac", "CommandModes", "CommandSensitivity", "CommandSimulate", "CommandSweep",
 ]
 
 
@@ -2260,6 +2260,107 @@ class CommandSensitivityNoDerivative(TypedDict):
     parameter: str
     reason: Literal["opens_joints", "blocks_motion"]
     joints: List[str]
+
+
+class CommandSimulateCombine(TypedDict):
+    """The rule that combines peaks."""
+
+    sigma: float
+    tones: Literal["sum", "largest", "root_sum_square"]
+
+
+class CommandSimulateOutput(TypedDict):
+    """A quantity over time."""
+
+    port: str
+    unit: Literal["m", "m/s", "m/s^2", "rad", "rad/s", "rad/s^2"]
+    values: List[Optional[float]]
+
+
+class CommandSimulateTurnings(TypedDict):
+    """Of a free motion: what its turns show."""
+
+    periods: int
+    frequency_hz: Optional[float]
+    spread: Optional[float]
+    amplitude: Optional[float]
+    damping_ratio: Optional[float]
+
+
+class CommandSimulateSteady(TypedDict):
+    """Under one --sine: its steady motion."""
+
+    periods: int
+    frequency_hz: float
+    mean: float
+    amplitudes: List[Optional[float]]
+    phases_rad: List[Optional[float]]
+    residual: float
+
+
+class _CommandSimulateReadingAlways(TypedDict):
+    port: str
+    unit: Literal["m", "rad"]
+
+
+class CommandSimulateReading(_CommandSimulateReadingAlways, total=False):
+    """What the motion of a port shows."""
+
+    turnings: "CommandSimulateTurnings"
+    tones: List["CommandSimulateTone"]
+    tones_residual: Optional[float]
+    steady: "CommandSimulateSteady"
+
+
+class CommandSimulateTone(TypedDict):
+    """A decaying oscillation in a free motion."""
+
+    frequency_hz: float
+    damping_ratio: float
+    amplitude: float
+    phase_rad: float
+
+
+class CommandSimulateVibration(TypedDict):
+    """With --vibration: the profile that shakes the ground."""
+
+    file: str
+    name: Optional[str]
+    port: Literal["base.x", "base.y", "base.z"]
+    seed: int
+    rms_m_per_s2: float
+    realised_rms_m_per_s2: float
+    combine: "CommandSimulateCombine"
+    marks: List[str]
+
+
+class _CommandSimulateAlways(TypedDict):
+    configuration: str
+    complete: bool
+    method: Literal["integrated", "exact", "fitted"]
+    tolerance: float
+    time_s: List[Optional[float]]
+    outputs: List["CommandSimulateOutput"]
+    kinetic_j: List[Optional[float]]
+    potential_j: List[Optional[float]]
+    work_j: List[Optional[float]]
+    energy_scale_j: float
+    energy_error_j: float
+    joint_drift_m: float
+    joint_gap_m: float
+    steps: int
+    stiff_steps: int
+    rejected_steps: int
+    evaluations: int
+    readings: List["CommandSimulateReading"]
+
+
+class CommandSimulate(_CommandSimulateAlways, total=False):
+    """What `modetune simulate --format json` prints."""
+
+    vibration: "CommandSimulateVibration"
+    equations_residual: float
+    input_error: float
 
 
 class CommandSweepConfiguration(TypedDict):
