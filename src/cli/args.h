@@ -133,11 +133,13 @@ typedef enum mt_answer_form {
     MT_ANSWER_ONE, /* the record */
     /* the record of each configuration in a list, of one that failed mt_failed_record; where -c
      * names it that one, without the list */
-    MT_ANSWER_CONFIGURATIONS
+    MT_ANSWER_CONFIGURATIONS,
+    MT_ANSWER_LIST, /* the record of each in a list */
+    MT_ANSWER_FILES /* mt_listed_record of each file in a list; with an operand the record, if any */
 } mt_answer_form;
 
 typedef struct mt_answer {
-    const mt_record *record; /* NULL: no schema */
+    const mt_record *record; /* NULL, and a form of a record: no schema */
     mt_answer_form form;
 } mt_answer;
 

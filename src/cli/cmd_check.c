@@ -485,19 +485,6 @@ static void list_problems(const char *path, const mt_diagnostics *messages, cons
     }
 }
 
-/* The warnings of one level; in mem. */
-static mt_warning *list_warnings(const mt_warning_list *list, mt_warning_level level,
-                                 mt_arena *mem, int *n)
-{
-    mt_warning *const out = mt_arena_alloc(mem, (size_t)list->n, sizeof *out);
-    for (int i = 0; out != NULL && i < list->n; i++) {
-        if (list->items[i].level == level) {
-            out[(*n)++] = list->items[i];
-        }
-    }
-    return out;
-}
-
 /* Write what was found of one file; lists lie in mem. */
 static void put_file(output *to, checked_row *row, const mt_diagnostics *messages,
                      const mt_warning_list *found, const char *failure, mt_arena *mem)
@@ -505,12 +492,10 @@ static void put_file(output *to, checked_row *row, const mt_diagnostics *message
     switch (to->format) {
     case MT_FORMAT_JSON:
         list_problems(row->file, messages, failure, mem, row);
-        row->doubts = list_warnings(found, MT_LEVEL_WARNING, mem, &row->n_doubts);
-        row->facts = list_warnings(found, MT_LEVEL_NOTE, mem, &row->n_facts);
+        row->doubts = mt_warning_pick(found, MT_LEVEL_WARNING, mem, &row->n_doubts);
+        row->facts = mt_warning_pick(found, MT_LEVEL_NOTE, mem, &row->n_facts);
         if (!mt_arena_failed(mem)) {
-            mt_json_open(&to->w, NULL, '{');
-            mt_record_put(&to->w, &checked_record, row);
-            mt_json_close(&to->w);
+            mt_record_put_object(&to->w, NULL, &checked_record, row, 0, NULL);
         }
         break;
     case MT_FORMAT_SARIF:
@@ -674,5 +659,6 @@ const mt_command mt_command_check = {
         "--format json has the same by members (file, line, column, pointer, severity, "
         "message), --format sarif as SARIF 2.1.0 for code hosts and editors. Paths are "
         "relative to the current folder, which should be that of the repository.",
+    .answer = {&checked_record, MT_ANSWER_LIST},
     .run = run_check,
 };

@@ -519,9 +519,7 @@ static int print_diff_json(const mt_args *args, const mt_result_diff *diff, mt_t
     rc = rc == MT_OK ? diff_row_of(args, diff, &mem, &row, &err) : rc;
     int code = MT_EXIT_DONE;
     if (rc == MT_OK) {
-        mt_json_open(&w, NULL, '{');
-        mt_record_put(&w, &diff_record, &row);
-        mt_json_close(&w);
+        mt_record_put_object(&w, NULL, &diff_record, &row, 0, NULL);
         code = mt_cli_json_done(&w);
     } else {
         code = mt_cli_failed(rc, &err);
@@ -584,5 +582,6 @@ const mt_command mt_command_diff = {
         "The text omits what follows from what it shows (errors, derivatives, changes); JSON "
         "and CSV have everything, with JSON pointers into both files. The exit status is 0 if "
         "the answers are equal, 1 if they differ, and 2 or more if they cannot be compared.",
+    .answer = {&diff_record, MT_ANSWER_ONE},
     .run = run_diff,
 };

@@ -84,7 +84,7 @@ static const mt_field listed_fields[] = {
     MT_F_TEXT("name", name, "What commands call it."),
     MT_F_TEXT("text", text, "What it is."),
 };
-static const mt_record listed_record =
+const mt_record mt_listed_record =
     MT_F_RECORD_OF(listed_fields, "listed", "A file that is part of the program.");
 #undef THIS
 
@@ -109,7 +109,7 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
         MT_R_COLUMN(name, kind->what, 0, MT_IN_TABLES),
         MT_R_COLUMN(text, kind->heading, 0, MT_IN_TABLES),
     };
-    const mt_record_table rows = MT_R_TABLE_OF(listed_record, columns);
+    const mt_record_table rows = MT_R_TABLE_OF(mt_listed_record, columns);
     mt_json_writer w = mt_json_writer_default(out);
     mt_table t = mt_table_default();
     int n = 0;
@@ -130,7 +130,7 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
         const listed_row row = {.name = name, .text = said.s == NULL ? "" : said.s};
         if (json) {
             mt_json_open(&w, NULL, '{');
-            mt_record_put(&w, &listed_record, &row);
+            mt_record_put(&w, &mt_listed_record, &row);
             mt_json_close(&w);
         } else {
             mt_table_record_row(&t, &rows, MT_IN_TABLES, &row);
@@ -347,6 +347,7 @@ const mt_command mt_command_examples = {
         "Lists the studies. With names: writes these studies into DIR/studies, and the "
         "models, references and schemas that they name beside it, and prints the paths. If "
         "one of the files exists with other contents, nothing is written.",
+    .answer = {NULL, MT_ANSWER_FILES},
     .run = run_examples,
 };
 
@@ -441,5 +442,6 @@ const mt_command mt_command_schema = {
         "aircraft, profile, result, index, progress, scene), or of what a command prints as "
         "JSON: command_modes, or the command's name alone where no kind of file has it "
         "(modes).",
+    .answer = {NULL, MT_ANSWER_FILES},
     .run = run_schema,
 };

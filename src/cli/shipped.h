@@ -24,6 +24,7 @@ extern const mt_shipped_kind mt_shipped_profiles;
 void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out);
 /* List the files, with the first sentence of their descriptions, in the requested format: as
  * JSON a list of objects of texts. Returns the exit status. */
+extern const mt_record mt_listed_record;
 int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out);
 
 /* Load the profile in the file of that name, or, where there is none, the profile of that name

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/cmd_run.h"
+#include "cli/shipped.h"
 #include "environment/aircraft.h"
 #include "environment/vibration.h"
 #include "io/file.h"
@@ -489,6 +490,28 @@ static void add_records(mt_test *t, mt_text *out, const char *room, const char *
     add_definitions(t, out, &found);
 }
 
+/* A list of the record, or of files, beside which the record may stand. */
+static void add_list_answer(mt_test *t, mt_text *out, const mt_command *command,
+                            definitions *found)
+{
+    const mt_record *const record = command->answer.record;
+    const bool files = command->answer.form == MT_ANSWER_FILES;
+    const bool both = files && record != NULL;
+    const mt_record *const item = files ? &mt_listed_record : record;
+    REQUIRE(t, item->name != NULL);
+    found->items[found->n++] = item;
+    mt_text_addf(out,
+                 "\"description\": \"What `modetune %s --format json` prints: a list%s.\", %s"
+                 "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/%s\"}",
+                 command->name, both ? " of files, or what its operand is" : "",
+                 both ? "\"anyOf\": [{" : "", item->name);
+    if (both) {
+        REQUIRE(t, record->name != NULL);
+        found->items[found->n++] = record;
+        mt_text_addf(out, "}, {\"$ref\": \"#/definitions/%s\"}]", record->name);
+    }
+}
+
 /* What a command prints. Records of configurations are definitions. */
 static void add_answer(mt_test *t, mt_text *out, const mt_command *command)
 {
@@ -514,8 +537,14 @@ static void add_answer(mt_test *t, mt_text *out, const mt_command *command)
                      command->name, record->name, mt_failed_record.name, record->name,
                      mt_failed_record.name);
         break;
+    case MT_ANSWER_LIST:
+    case MT_ANSWER_FILES:
+        add_list_answer(t, out, command, &found);
+        break;
     }
-    find_definitions(t, record, &found);
+    if (record != NULL) {
+        find_definitions(t, record, &found);
+    }
     add_definitions(t, out, &found);
 }
 
@@ -693,7 +722,8 @@ static void schema__of_what_commands_print_is_what_their_records_say(mt_test *t)
     for (int i = 0; i < MT_CMD_IDS; i++) {
         mt_text compact = {.s = NULL};
         char name[64];
-        if (mt_commands[i]->answer.record != NULL) {
+        if (mt_commands[i]->answer.record != NULL ||
+            mt_commands[i]->answer.form == MT_ANSWER_FILES) {
             (void)snprintf(name, sizeof name, "command_%s", mt_commands[i]->name);
             add_answer(t, &compact, mt_commands[i]);
             check_schema(t, name, &compact);

@@ -20,8 +20,17 @@ import large  # noqa: E402
 import printed  # noqa: E402
 from suite import PROGRAM, SOURCE  # noqa: E402
 
+WRITTEN = "tests/result/written_by"
 # The models: "tests/..." and "problems/..." are files, the others are made here.
 LINES = {
+    "check": [
+        ["problems/stick.json", "tests/models/apart.json", "problems/aircraft.json", "studies/stick.json", "none.json"],
+        ["tests/documents/wrong/beams.json", "tests/documents/wrong/aircraft_format.json"],
+    ],
+    "diff": [
+        [f"{WRITTEN}/2026-11-20/inceptor_tuning_1.json", f"{WRITTEN}/2026-11-25/inceptor_catalogue.json"],
+    ],
+    "examples": [[]],
     "modes": [
         ["tests/models/pendulum.json", "--shapes"],
         ["tests/models/massless.json"],
@@ -45,6 +54,7 @@ LINES = {
         ["problems/stick.json", "--count", "1"],
         ["cranks.json"],
     ],
+    "schema": [[]],
     "simulate": [
         ["tests/models/pendulum.json", "-c", "hanging", "--start", "pivot=0.5", "--duration", "8"],
         ["tests/models/pendulum.json", "-c", "hanging", "--start", "pivot=0.5", "--duration", "0.01", "--dt-out", "0.005"],
@@ -61,6 +71,7 @@ LINES = {
 }
 # What is of studies alone, or of several commands, and not seen in these lines as null, or as something else.
 EXCUSED = {
+    "check": {"doubt/file"},
     "modes": {"doubt/configuration", "doubt/file", "doubt/line", "doubt/column", "doubt/pointer"},
 }
 # A pendulum upside down, which its spring holds so that rounding hides whether it stands.
@@ -167,7 +178,7 @@ class Answers(unittest.TestCase):
     def setUpClass(cls):
         cls.kept = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.kept.name)
-        for name in ("tests", "problems"):
+        for name in ("tests", "problems", "studies"):
             (cls.folder / name).symlink_to(SOURCE / name)
         for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS),
                             ("slider", SLIDER), ("shaken", SHAKEN)):

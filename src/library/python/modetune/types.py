@@ -13,7 +13,8 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
-    "CommandMac", "CommandModes", "CommandSensitivity", "CommandSimulate", "CommandSweep",
+    "CommandCheck", "CommandDiff", "CommandExamples", "CommandMac", "CommandModes",
+    "CommandSchema", "CommandSensitivity", "CommandSimulate", "CommandSweep",
 ]
 
 
@@ -2105,6 +2106,75 @@ class Scene(TypedDict):
     joints: List["SceneJoint"]
 
 
+class CommandCheckProblem(TypedDict):
+    """A problem of a file."""
+
+    file: str
+    line: Optional[int]
+    column: Optional[int]
+    pointer: Optional[str]
+    severity: Literal["error", "warning", "note"]
+    message: str
+
+
+class CommandCheckFile(TypedDict):
+    """A file that was checked."""
+
+    file: str
+    kind: Optional[Literal["model", "study", "result", "aircraft", "profile"]]
+    ok: bool
+    problems: List["CommandCheckProblem"]
+    left_out: int
+    doubts: List["CommandCheckDoubt"]
+    facts: List["CommandCheckDoubt"]
+
+
+class CommandCheckDoubt(TypedDict):
+    """A fact or a doubt, with its place in a file where that is known."""
+
+    kind: str
+    text: str
+    configuration: Optional[str]
+    file: Optional[str]
+    line: Optional[int]
+    column: Optional[int]
+    pointer: Optional[str]
+
+
+class CommandDiffDifference(TypedDict):
+    """A member that two results tell otherwise."""
+
+    part: str
+    what: str
+    member: Optional[str]
+    unit: Optional[str]
+    a: Optional[Union[float, str, bool]]
+    b: Optional[Union[float, str, bool]]
+    change_percent: Optional[float]
+    pointer_a: Optional[str]
+    pointer_b: Optional[str]
+    derived: bool
+
+
+class CommandDiff(TypedDict):
+    """What `modetune diff --format json` prints."""
+
+    a: str
+    b: str
+    rel_tol: float
+    abs_tol: float
+    same: bool
+    made_by: List["CommandDiffDifference"]
+    differences: List["CommandDiffDifference"]
+
+
+class CommandExamplesListed(TypedDict):
+    """A file that is part of the program."""
+
+    name: str
+    text: str
+
+
 class CommandMacPair(TypedDict):
     """A mode of A and the mode of B that it is paired with."""
 
@@ -2217,6 +2287,13 @@ class CommandModesDampedMode(TypedDict):
     damping_ratio_percent: Optional[float]
     decay_per_s: Optional[float]
     residual: float
+
+
+class CommandSchemaListed(TypedDict):
+    """A file that is part of the program."""
+
+    name: str
+    text: str
 
 
 class CommandSensitivityConfiguration(TypedDict):
@@ -2435,10 +2512,13 @@ StudyGoal = Union[
 ProfilePair = List[float]
 ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
 ProfileOrigin = Literal["published", "identified", "assumed"]
+CommandCheck = List["CommandCheckFile"]
+CommandExamples = List["CommandExamplesListed"]
 CommandModes = Union[
     List[Union["CommandModesConfiguration", "CommandModesFailed"]], "CommandModesConfiguration",
     "CommandModesFailed"
 ]
+CommandSchema = List["CommandSchemaListed"]
 CommandSensitivity = Union[
     List[Union["CommandSensitivityConfiguration", "CommandSensitivityFailed"]],
     "CommandSensitivityConfiguration", "CommandSensitivityFailed"
