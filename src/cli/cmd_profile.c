@@ -135,7 +135,7 @@ static const mt_field breakpoint_fields[] = {
     MT_F_UNWRITTEN_TEXT(origin), /* JSON has it beside the list */
 };
 static const mt_record breakpoint_record =
-    MT_F_RECORD_OF(breakpoint_fields, NULL, "A breakpoint of a spectral density.");
+    MT_F_RECORD_OF(breakpoint_fields, "breakpoint", "A breakpoint of a spectral density.");
 static const mt_record_column breakpoint_columns[] = {
     MT_R_COLUMN(hz, "frequency [Hz]", HZ_DIGITS, MT_IN_TEXT),
     MT_R_COLUMN(part, "part", 0, MT_IN_TEXT),
@@ -171,7 +171,7 @@ static const mt_field random_fields[] = {
               "Its spectral density.", .flat = true),
 };
 static const mt_record random_record =
-    MT_F_RECORD_OF(random_fields, NULL, "A random part of a profile.");
+    MT_F_RECORD_OF(random_fields, "random", "A random part of a profile.");
 #undef THIS
 
 /* A tone. */
@@ -195,7 +195,8 @@ static const mt_field tone_fields[] = {
     MT_F_CHOICE_OR_NULL("origin", origin, origins, "Where it is from; null: it does not say."),
     MT_F_TEXT_OR_NULL("source", source, "Document that it is from."),
 };
-static const mt_record tone_record = MT_F_RECORD_OF(tone_fields, NULL, "A tone of a profile.");
+static const mt_record tone_record =
+    MT_F_RECORD_OF(tone_fields, "tone", "A tone of a profile.");
 static const mt_record_column tone_columns[] = {
     MT_R_COLUMN(label, "tone", 0, MT_IN_TEXT),
     MT_R_COLUMN(lower_hz, "from [Hz]", HZ_DIGITS, MT_IN_TEXT),
@@ -206,6 +207,41 @@ static const mt_record_column tone_columns[] = {
     MT_R_COLUMN(source, "source", 0, MT_IN_TEXT),
 };
 static const mt_record_table tone_rows = MT_R_TABLE_OF(tone_record, tone_columns);
+#undef THIS
+
+/* A mass on a spring whose base follows the profile. */
+typedef struct mass_row {
+    double hz;
+    mt_vibrated_values vibrated;
+} mass_row;
+
+#define THIS mass_row
+static const mt_field mass_fields[] = {
+    MT_F_NUMBER("natural_frequency_hz", hz, "Its natural frequency."),
+    MT_VIBRATED_FIELDS(vibrated),
+};
+static const mt_record mass_record =
+    MT_F_RECORD_OF(mass_fields, "mass", "The absolute acceleration of one mass on a spring.");
+static const mt_record_column mass_columns[] = {
+    MT_R_COLUMN(hz, "natural frequency [Hz]", HZ_DIGITS, MT_IN_TABLES),
+};
+static const mt_record_table mass_rows = MT_R_TABLE_OF(mass_record, mass_columns);
+#undef THIS
+
+/* What --spectrum asks for. */
+typedef struct spectrum_row {
+    double damping_ratio;
+    int n;
+    mass_row *masses;
+} spectrum_row;
+
+#define THIS spectrum_row
+static const mt_field spectrum_fields[] = {
+    MT_F_NUMBER("damping_ratio", damping_ratio, "Damping ratio of every mass."),
+    MT_F_LIST("masses", masses, n, mass_row, mass_record, "The masses, by natural frequency."),
+};
+static const mt_record spectrum_record =
+    MT_F_RECORD_OF(spectrum_fields, NULL, "Masses on springs whose base follows the profile.");
 #undef THIS
 
 /* A profile. */
@@ -220,6 +256,9 @@ typedef struct profile_row {
     random_row *random;
     int n_tones;
     tone_row *tones;
+    mt_rule_row rule;
+    bool with_spectrum;
+    spectrum_row spectrum;
 } profile_row;
 
 #define THIS profile_row
@@ -234,8 +273,12 @@ static const mt_field profile_fields[] = {
     MT_F_LIST("random", random, n_random, random_row, random_record, "Its random parts."),
     MT_F_LIST("tones", tones, n_tones, tone_row, tone_record,
               "Its tones, with the harmonics of rotors."),
+    MT_RULE_FIELDS(rule),
+    MT_F_RECORD("spectrum", spectrum, spectrum_row, spectrum_record,
+                "With --spectrum: what it does to one mass.", MT_F_WHEN(with_spectrum)),
 };
-static const mt_record profile_record = MT_F_RECORD_OF(profile_fields, NULL, NULL);
+static const mt_record profile_record =
+    MT_F_RECORD_OF(profile_fields, "profile", "What a profile of vibration requires.");
 #undef THIS
 
 /* Breakpoint i of a random part; part: which of several, 0: there is one. */
@@ -290,10 +333,18 @@ static tone_row tone_row_of(const mt_vibration *v, int i)
     };
 }
 
-/* Lists lie in mem. */
-static mt_status profile_row_of(const mt_vibration *v, mt_arena *mem, profile_row *out,
-                                mt_err *err)
+/* The vibration of mass i. */
+static mt_vibrated vibrated_of(const view *s, int i)
 {
+    return (mt_vibrated){
+        .profile = s->v, .response = &s->responses[i], .is_acceleration = true};
+}
+
+/* Lists lie in mem. */
+static mt_status profile_row_of(const view *s, mt_arena *mem, profile_row *out, mt_err *err)
+{
+    const mt_vibration *const v = s->v;
+    spectrum_row *const spectrum = &out->spectrum;
     *out = (profile_row){
         .file = v->path,
         .name = v->name,
@@ -305,6 +356,11 @@ static mt_status profile_row_of(const mt_vibration *v, mt_arena *mem, profile_ro
         .random = mt_arena_alloc(mem, (size_t)v->n_random, sizeof *out->random),
         .n_tones = v->n_tones,
         .tones = mt_arena_alloc(mem, (size_t)v->n_tones, sizeof *out->tones),
+        .rule = mt_rule_row_of(v),
+        .with_spectrum = s->of.n > 0,
+        .spectrum = {.damping_ratio = s->of.damping_ratio,
+                     .n = s->of.n,
+                     .masses = mt_arena_alloc(mem, (size_t)s->of.n, sizeof(mass_row))},
     };
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < v->n_random; i++) {
@@ -313,6 +369,11 @@ static mt_status profile_row_of(const mt_vibration *v, mt_arena *mem, profile_ro
     }
     for (int i = 0; i < v->n_tones; i++) {
         out->tones[i] = tone_row_of(v, i);
+    }
+    for (int i = 0; i < spectrum->n; i++) {
+        const mt_vibrated row = vibrated_of(s, i);
+        spectrum->masses[i].hz = s->hz[i];
+        MT_TRY(mt_vibrated_values_of(&row, mem, &spectrum->masses[i].vibrated, err));
     }
     return MT_OK;
 }
@@ -400,33 +461,10 @@ static void add_tone(mt_table *t, const tone_row *tone)
     mt_table_record_row(t, &segment_rows, MT_IN_CSV, &row);
 }
 
-static void put_spectrum(mt_json_writer *w, const view *s)
-{
-    mt_json_open(w, "spectrum", '{');
-    mt_json_put_number(w, "damping_ratio", s->of.damping_ratio);
-    mt_json_open(w, "masses", '[');
-    for (int i = 0; i < s->of.n; i++) {
-        const mt_vibrated row = {
-            .profile = s->v, .response = &s->responses[i], .is_acceleration = true};
-        mt_json_open(w, NULL, '{');
-        mt_json_put_number(w, "natural_frequency_hz", s->hz[i]);
-        mt_vibrated_json(w, &row);
-        mt_json_close(w);
-    }
-    mt_json_close(w);
-    mt_json_close(w);
-}
-
-static int write_profile_json(const view *s, const profile_row *row, mt_text *out)
+static int write_profile_json(const profile_row *row, mt_text *out)
 {
     mt_json_writer w = mt_json_writer_default(out);
-    mt_json_open(&w, NULL, '{');
-    mt_record_put(&w, &profile_record, row);
-    mt_vibrated_rule_json(&w, s->v);
-    if (s->of.n > 0) {
-        put_spectrum(&w, s);
-    }
-    mt_json_close(&w);
+    mt_record_put_object(&w, NULL, &profile_record, row, 0, NULL);
     return mt_cli_json_done(&w);
 }
 
@@ -468,15 +506,14 @@ static void print_tones(const profile_row *p, mt_text *out)
     mt_table_free(&t);
 }
 
-static mt_table spectrum_table(const view *s)
+static mt_table spectrum_table(const view *s, const spectrum_row *spectrum)
 {
     mt_table t = mt_table_default();
-    mt_table_column(&t, "natural frequency [Hz]", "natural_frequency_hz", MT_ALIGN_POINT);
+    mt_table_record_columns(&t, &mass_rows, MT_IN_TABLES);
     mt_vibrated_columns(&t);
-    for (int i = 0; i < s->of.n; i++) {
-        const mt_vibrated row = {
-            .profile = s->v, .response = &s->responses[i], .is_acceleration = true};
-        mt_table_number(&t, s->hz[i], HZ_DIGITS);
+    for (int i = 0; i < spectrum->n; i++) {
+        const mt_vibrated row = vibrated_of(s, i);
+        mt_table_record_row(&t, &mass_rows, MT_IN_TABLES, &spectrum->masses[i]);
         mt_vibrated_row(&t, &row);
     }
     return t;
@@ -485,8 +522,7 @@ static mt_table spectrum_table(const view *s)
 /* Where the tones peak, of one mass. */
 static void print_peaks(const view *s, mt_text *out)
 {
-    const mt_vibrated row = {
-        .profile = s->v, .response = &s->responses[0], .is_acceleration = true};
+    const mt_vibrated row = vibrated_of(s, 0);
     mt_table t = mt_table_default();
     mt_vibrated_tone_columns(&t);
     for (int i = 0; i < s->v->n_tones; i++) {
@@ -509,7 +545,7 @@ static void write_profile_text(const view *s, const profile_row *p, mt_text *out
         print_tones(p, out);
     }
     if (s->of.n > 0) {
-        mt_table t = spectrum_table(s);
+        mt_table t = spectrum_table(s, &p->spectrum);
         mt_text_addf(out, "Absolute acceleration of one mass, damping ratio %.5g; ",
                      s->of.damping_ratio);
         mt_vibrated_rule(s->v, out);
@@ -541,9 +577,9 @@ static int print(const mt_args *args, const view *s, const profile_row *p, mt_te
     mt_table t;
     switch (args->format) {
     case MT_FORMAT_JSON:
-        return write_profile_json(s, p, out);
+        return write_profile_json(p, out);
     case MT_FORMAT_CSV:
-        t = s->of.n > 0 ? spectrum_table(s) : segments_table(p);
+        t = s->of.n > 0 ? spectrum_table(s, &p->spectrum) : segments_table(p);
         mt_table_csv(&t, out);
         mt_table_free(&t);
         break;
@@ -574,7 +610,7 @@ static int run_profile(const mt_args *args, mt_text *out)
     if (rc == MT_OK) {
         s.v = v;
         rc = respond(&s, &mem, &err);
-        rc = rc == MT_OK ? profile_row_of(v, &mem, &row, &err) : rc;
+        rc = rc == MT_OK ? profile_row_of(&s, &mem, &row, &err) : rc;
         code = rc == MT_OK ? print(args, &s, &row, out) : mt_cli_failed(rc, &err);
     }
     mt_vibration_delete(v);
@@ -599,5 +635,6 @@ const mt_command mt_command_profile = {
         "largest peaks of the tones over their ranges, proven; and both combined by the "
         "profile's rule (default: 3 times the RMS plus the sum of all tones). --format csv "
         "has one row for each segment and tone, or for each natural frequency.",
+    .answer = {&profile_record, MT_ANSWER_FILES},
     .run = run_profile,
 };

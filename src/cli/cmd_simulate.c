@@ -153,9 +153,7 @@ typedef struct shaken_row {
     long seed;
     double rms_m_per_s2;
     double realised_rms_m_per_s2;
-    mt_combined_row combine;
-    int n_marks;
-    const char **marks;
+    mt_rule_row rule;
 } shaken_row;
 
 #define THIS shaken_row
@@ -166,8 +164,7 @@ static const mt_field shaken_fields[] = {
     MT_F_LONG("seed", seed, "Seed of the realisation, from --seed."),
     MT_F_NUMBER("rms_m_per_s2", rms_m_per_s2, "RMS of its random parts in the profile."),
     MT_F_NUMBER("realised_rms_m_per_s2", realised_rms_m_per_s2, "RMS in this realisation."),
-    MT_F_RECORD("combine", combine, mt_combined_row, mt_combined_record, NULL),
-    MT_F_TEXTS("marks", marks, n_marks, "What is assumed in the profile, or unconfirmed."),
+    MT_RULE_FIELDS(rule),
 };
 static const mt_record shaken_record =
     MT_F_RECORD_OF(shaken_fields, NULL, "A profile that shakes the ground.");
@@ -181,9 +178,7 @@ static shaken_row shaken_row_of(const sim_forced_response *s)
                         .seed = (long)s->seed,
                         .rms_m_per_s2 = mt_vibration_rms(s->v),
                         .realised_rms_m_per_s2 = s->rms,
-                        .combine = mt_combined_row_of(s->v),
-                        .n_marks = s->v->n_marks,
-                        .marks = s->v->marks};
+                        .rule = mt_rule_row_of(s->v)};
 }
 
 /* The options of `simulate` in the words of a system. */

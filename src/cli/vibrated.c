@@ -147,23 +147,6 @@ void mt_vibrated_marks(const mt_vibration *v, mt_text *out)
     mt_text_add(out, v->n_marks > 0 ? "\n" : "");
 }
 
-#define THIS mt_combined_row
-static const mt_field combined_fields[] = {
-    MT_F_NUMBER("sigma", sigma, "How many times the RMS counts."),
-    MT_F_ENUM(
-        "tones", tones, mt_vibration_sum, mt_vibration_sum_names,
-        "What of the tones is added: their sum, the largest, or the root of the sum of their "
-        "squares."),
-};
-const mt_record mt_combined_record =
-    MT_F_RECORD_OF(combined_fields, "combine", "The rule that combines peaks.");
-#undef THIS
-
-mt_combined_row mt_combined_row_of(const mt_vibration *v)
-{
-    return (mt_combined_row){.sigma = v->sigma, .tones = v->rule};
-}
-
 void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v)
 {
     mt_json_open(w, "combine", '{');

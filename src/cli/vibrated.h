@@ -12,13 +12,6 @@ const char *mt_vibrated_name(const mt_vibration *v); /* its name, or its path */
 void mt_vibrated_rule(const mt_vibration *v, mt_text *out);
 /* Append what is assumed or unconfirmed in the profile; nothing where all is confirmed. */
 void mt_vibrated_marks(const mt_vibration *v, mt_text *out);
-/* The rule that combines peaks. */
-typedef struct mt_combined_row {
-    double sigma;
-    mt_vibration_sum tones;
-} mt_combined_row;
-extern const mt_record mt_combined_record;
-mt_combined_row mt_combined_row_of(const mt_vibration *v);
 /* The rule as members of an open object, and the profile's marks. */
 void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v);
 

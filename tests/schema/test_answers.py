@@ -54,6 +54,13 @@ LINES = {
         ["problems/stick.json", "--count", "1"],
         ["cranks.json"],
     ],
+    "profile": [
+        [],
+        ["helicopter_sine_on_random"],
+        ["truck_vertical"],
+        ["gevs_qualification", "--spectrum", "5:500:3"],
+        ["shaken.json", "--spectrum", "17:18:1"],
+    ],
     "schema": [[]],
     "simulate": [
         ["tests/models/pendulum.json", "-c", "hanging", "--start", "pivot=0.5", "--duration", "8"],
