@@ -73,7 +73,7 @@ LINES = {
     "sweep": [
         ["slider.json", "--drive", "bore=-0.1:0.11715:5"],
         ["tests/models/apart.json", "--drive", "root=0:0.1:2"],
-        ["tests/models/driven_rod.json", "--drive", "pivot=0:30*deg:3", "--modes", "--hold", "servo"],
+        ["tests/models/driven_rod.json", "--drive", "pivot=0:30*deg:3", "--frequencies", "--hold", "servo"],
     ],
 }
 # What is of studies alone, or of several commands, and not seen in these lines as null, or as something else.
