@@ -153,7 +153,7 @@ class Format:
                 kind = case["if"]["properties"]["type"]["const"]
                 new["kinds"].append((kind, self.section(self.resolve(case["then"])[0], f"`{kind}`", place)))
         if "properties" not in schema:  # what a command prints: one of its definitions, or a list of them
-            for name in dict.fromkeys(re.findall(r'"#/definitions/(\w+)"', json.dumps(schema["anyOf"]))):
+            for name in dict.fromkeys(re.findall(r'"#/definitions/(\w+)"', json.dumps([schema.get("anyOf"), schema.get("items")]))):
                 self.section(self.schema["definitions"][name], f"`{name}`", "/N")
         # depth first: the sections of its objects follow
         for member, value in schema.get("properties", {}).items():
