@@ -167,21 +167,6 @@ static void response_vibration_print(const response_view *v, mt_text *out)
     mt_vibrated_marks(p, out);
 }
 
-/* Members "profile", and "vibration", "psd_unit", "psd" of a response. */
-static void response_vibration_json(const response_view *v, mt_json_writer *w)
-{
-    const mt_vibration *const p = v->profiled->v;
-    mt_json_open(w, "profile", '{');
-    mt_json_put_string(w, "file", p->path);
-    mt_json_put_string(w, "name", p->name);
-    mt_json_put_string(w, "axis", mt_vibrated_axis(p));
-    mt_json_put_number(w, "rms_m_per_s2", mt_vibration_rms(p));
-    mt_vibrated_rule_json(w, p);
-    mt_json_close(w);
-    mt_json_put_string(w, "vibration_method",
-                       v->profiled->no_sums == NULL ? "poles" : "quadrature");
-}
-
 /* The density at a frequency, or NaN where it is infinite. */
 static double density_at(const response_view *v, int pair, int point)
 {
@@ -194,26 +179,6 @@ static double density_at(const response_view *v, int pair, int point)
 static void density_unit(const response_view *v, int pair, char unit[UNIT_TEXT])
 {
     (void)mt_snprintf(unit, UNIT_TEXT, "(%s)^2/Hz", response_output_of(v, pair)->unit);
-}
-
-static void response_vibration_json_pair(const response_view *v, int pair, mt_json_writer *w)
-{
-    const mt_vibrated row = row_of(v, pair);
-    const mt_vibration_response *const a = row.response;
-    char unit[UNIT_TEXT];
-    density_unit(v, pair, unit);
-    mt_json_open(w, "vibration", '{');
-    mt_vibrated_json(w, &row);
-    if (a->end != MT_FORCED_FINITE && a->pole >= 0) {
-        mt_json_put_integer(w, "by_mode", mode_of(v, v->profiled->poles[a->pole]));
-    }
-    mt_json_close(w);
-    mt_json_put_string(w, "psd_unit", unit);
-    mt_json_open_flat(w, "psd", '[');
-    for (int i = 0; i < v->curve->n; i++) {
-        mt_json_put_number(w, NULL, density_at(v, pair, i));
-    }
-    mt_json_close(w);
 }
 
 /* The columns, and the cells for one frequency of the curve. */
@@ -298,6 +263,27 @@ static const char *parameter_of(const response_view *v, int k)
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
 
+/* What one parameter does to an extreme. */
+typedef struct magnitude_slope_row {
+    const char *parameter;
+    double value;
+    double per_percent;
+} magnitude_slope_row;
+
+#define THIS magnitude_slope_row
+static const mt_field magnitude_slope_fields[] = {
+    MT_F_TEXT("parameter", parameter, "Its name."),
+    MT_F_NUMBER("value", value, "Its value in this configuration [SI]."),
+    MT_F_NUMBER_OR_NULL("magnitude_per_percent", per_percent,
+                        "Change of the magnitude for one per cent more of it; null: the "
+                        "magnitude is 0 or infinite [in the unit of the response]."),
+};
+static const mt_record magnitude_slope_record = MT_F_RECORD_OF(
+    magnitude_slope_fields, "sensitivity", "What one parameter does to the magnitude.");
+#undef THIS
+
+static const char *const extreme_kinds[] = {"peak", "resonance", "antiresonance", "minimum"};
+
 /* A peak, a resonance or an antiresonance. */
 typedef struct extreme_row {
     const char *input;
@@ -307,19 +293,28 @@ typedef struct extreme_row {
     double magnitude;
     const char *unit;
     double phase_deg;
+    bool with_slopes;
+    magnitude_slope_row *slopes;
+    int n_slopes;
 } extreme_row;
 
 #define THIS extreme_row
 static const mt_field extreme_fields[] = {
     MT_F_UNWRITTEN_TEXT(input), /* JSON has them around the list */
     MT_F_UNWRITTEN_TEXT(output),
-    MT_F_TEXT("kind", kind, "\"peak\", \"resonance\", \"antiresonance\" or \"minimum\"."),
+    MT_F_CHOICE(
+        "kind", kind, extreme_kinds,
+        "\"resonance\": of a mode that nothing damps, where the magnitude is infinite."),
     MT_F_NUMBER("frequency_hz", hz, "Where it is."),
     MT_F_NUMBER_OR_NULL("magnitude", magnitude, "Magnitude of the response; null: infinite."),
     MT_F_UNWRITTEN_TEXT(unit),
     MT_F_NUMBER_OR_NULL("phase_deg", phase_deg, "Phase of the output against the input."),
+    MT_F_LIST("sensitivities", slopes, n_slopes, magnitude_slope_row, magnitude_slope_record,
+              "With --sensitivity: one of each parameter.", MT_F_WHEN(with_slopes),
+              .flat = true),
 };
-static const mt_record extreme_record = MT_F_RECORD_OF(extreme_fields, NULL, NULL);
+static const mt_record extreme_record =
+    MT_F_RECORD_OF(extreme_fields, "extreme", "A peak, or a minimum.");
 static const mt_record_column extreme_columns[] = {
     MT_R_COLUMN(input, "input", 0, MT_IN_TEXT),
     MT_R_COLUMN(output, "output", 0, MT_IN_TEXT),
@@ -494,144 +489,359 @@ static void response_print(const response_view *v, mt_text *out)
     mt_text_add(out, "\n");
 }
 
-static void json_ports(mt_json_writer *w, const char *member, int n, const mt_port *ports)
+#define THIS mt_port
+static const mt_field port_fields[] = {
+    MT_F_TEXT("name", name, "Its full name."),
+    MT_F_TEXT("unit", unit, "Its unit."),
+};
+static const mt_record port_record = MT_F_RECORD_OF(port_fields, "port", "An input or output.");
+#undef THIS
+
+typedef struct complex_row {
+    double re;
+    double im;
+} complex_row;
+
+#define THIS complex_row
+static const mt_field complex_fields[] = {
+    MT_F_NUMBER("re", re, "Real part."),
+    MT_F_NUMBER("im", im, "Imaginary part."),
+};
+static const mt_record complex_record =
+    MT_F_RECORD_OF(complex_fields, "coefficient", "A complex coefficient.");
+#undef THIS
+
+typedef struct pole_row {
+    complex_row pole;
+    complex_row residue;
+} pole_row;
+
+#define THIS pole_row
+static const mt_field pole_fields[] = {
+    MT_F_NUMBER("re", pole.re, "Real part of the pole [1/s]."),
+    MT_F_NUMBER("im", pole.im, "Imaginary part of the pole [rad/s]."),
+    MT_F_NUMBER("residue_re", residue.re, "Real part of its residue [unit times rad/s]."),
+    MT_F_NUMBER("residue_im", residue.im, "Imaginary part of its residue [unit times rad/s]."),
+};
+static const mt_record pole_record =
+    MT_F_RECORD_OF(pole_fields, "pole", "A pole of the response with its residue.");
+#undef THIS
+
+/* What the profile does to the output of a response. */
+typedef struct vibration_row {
+    mt_vibrated_values vibrated;
+    bool with_mode;
+    int by_mode;
+} vibration_row;
+
+#define THIS vibration_row
+static const mt_field vibration_fields[] = {
+    MT_VIBRATED_FIELDS(vibrated),
+    MT_F_COUNT("by_mode", by_mode, 0,
+               "Vibration mode for which there is no finite number; 0: none is near.",
+               MT_F_WHEN(with_mode)),
+};
+static const mt_record vibration_record =
+    MT_F_RECORD_OF(vibration_fields, NULL, "What the profile does to the output.");
+#undef THIS
+
+/* The response of one output to one input. */
+typedef struct response_row {
+    const char *input;
+    const char *output;
+    const char *unit;
+    extreme_row *extremes;
+    int n_extremes;
+    bool with_poles;
+    pole_row *poles;
+    int n_poles;
+    bool with_no_poles;
+    const char *no_poles;
+    bool with_polynomial;
+    complex_row *polynomial;
+    int n_polynomial;
+    double *re;
+    double *im;
+    double *error;
+    double *psd;
+    int n;
+    bool with_vibration;
+    vibration_row vibration;
+    const char *psd_unit;
+} response_row;
+
+#define THIS response_row
+static const mt_field response_fields[] = {
+    MT_F_TEXT("input", input, "What shakes."),
+    MT_F_TEXT("output", output, "What is seen."),
+    MT_F_TEXT("unit", unit, "Unit of the response: that of the output per that of the input."),
+    MT_F_LIST("extremes", extremes, n_extremes, extreme_row, extreme_record,
+              "Peaks and minima within the range."),
+    MT_F_LIST_OR_NULL(
+        "poles", poles, n_poles, pole_row, pole_record,
+        "With --poles: the response is the sum of residue / (i omega - pole) over "
+        "the poles and their conjugates, and of a polynomial; null: there is no "
+        "such sum.",
+        MT_F_WHEN(with_poles), .flat = true),
+    MT_F_TEXT("no_poles", no_poles, "Why there is none.", MT_F_WHEN(with_no_poles)),
+    MT_F_LIST("polynomial", polynomial, n_polynomial, complex_row, complex_record,
+              "Its coefficients of (i omega)^0, ^1 and ^2.", MT_F_WHEN(with_polynomial),
+              .flat = true),
+    MT_F_NUMBERS("re", re, n,
+                 "Real part at each frequency [in unit]; null: infinite, or not a number."),
+    MT_F_NUMBERS("im", im, n, "Imaginary part at each frequency [in unit]."),
+    MT_F_NUMBERS("error", error, n, "Bound of the error at each frequency [in unit]."),
+    MT_F_RECORD("vibration", vibration, vibration_row, vibration_record,
+                "With --vibration: what the profile does to the output.",
+                MT_F_WHEN(with_vibration)),
+    MT_F_TEXT("psd_unit", psd_unit, "Unit of the density.", MT_F_WHEN(with_vibration)),
+    MT_F_NUMBERS("psd", psd, n,
+                 "Power spectral density of the output at each frequency [in psd_unit].",
+                 MT_F_WHEN(with_vibration)),
+};
+static const mt_record response_record =
+    MT_F_RECORD_OF(response_fields, "response", "The response of one output to one input.");
+#undef THIS
+
+typedef struct profile_row {
+    const char *file;
+    const char *name;
+    const char *axis;
+    double rms_m_per_s2;
+    mt_rule_row rule;
+} profile_row;
+
+#define THIS profile_row
+static const char *const axes[] = {"x", "y", "z"};
+static const mt_field profile_fields[] = {
+    MT_F_TEXT("file", file, "Its path."),
+    MT_F_TEXT_OR_NULL("name", name, "Its name."),
+    MT_F_CHOICE_OR_NULL("axis", axis, axes, "Along which it shakes; null: any."),
+    MT_F_NUMBER("rms_m_per_s2", rms_m_per_s2, "Overall RMS of its random parts."),
+    MT_RULE_FIELDS(rule),
+};
+static const mt_record profile_record =
+    MT_F_RECORD_OF(profile_fields, NULL, "The profile of vibration.");
+#undef THIS
+
+/* One configuration, answered. */
+typedef struct configuration_row {
+    const char *configuration;
+    const char *method;
+    int modes;
+    int modes_left_out;
+    bool with_shapes;
+    int shapes_of_others;
+    bool coupled;
+    bool complete;
+    bool with_profile;
+    profile_row profile;
+    const char *vibration_method;
+    mt_port *inputs;
+    int n_inputs;
+    mt_port *outputs;
+    int n_outputs;
+    double *frequencies_hz;
+    int n_frequencies;
+    response_row *responses;
+    int n_responses;
+} configuration_row;
+
+#define THIS configuration_row
+static const char *const methods[] = {"direct", "modes"};
+static const char *const vibration_methods[] = {"poles", "quadrature"};
+static const mt_field configuration_fields[] = {
+    MT_F_TEXT("configuration", configuration, "Its name."),
+    MT_F_CHOICE(
+        "method", method, methods,
+        "\"direct\": a factor of the dynamic stiffness at every frequency; \"modes\": by "
+        "modes."),
+    MT_F_COUNT("modes", modes, 0, "Number of modes that it is made of."),
+    MT_F_COUNT("modes_left_out", modes_left_out, 0, "Number of the others."),
+    MT_F_COUNT("shapes_of_others", shapes_of_others, 0,
+               "Of a large mechanism: number of shapes that stand for the others.",
+               MT_F_WHEN(with_shapes)),
+    MT_F_FLAG("coupled", coupled, "Damping couples the modes."),
+    MT_F_FLAG("complete", complete, "All peaks are as fine as asked for."),
+    MT_F_RECORD("profile", profile, profile_row, profile_record,
+                "With --vibration: the profile.", MT_F_WHEN(with_profile)),
+    MT_F_CHOICE(
+        "vibration_method", vibration_method, vibration_methods,
+        "\"poles\": its integrals are exact; \"quadrature\": errors are estimates, and of "
+        "tones nothing is proven.",
+        MT_F_WHEN(with_profile)),
+    MT_F_LIST("inputs", inputs, n_inputs, mt_port, port_record, "What shakes.", .flat = true),
+    MT_F_LIST("outputs", outputs, n_outputs, mt_port, port_record, "What is seen.",
+              .flat = true),
+    MT_F_NUMBERS("frequencies_hz", frequencies_hz, n_frequencies,
+                 "The frequencies: of the grid, and between them where a curve bends."),
+    MT_F_LIST(
+        "responses", responses, n_responses, response_row, response_record,
+        "One of each input and output: all outputs of the first input, then of the next."),
+};
+static const mt_record configuration_record =
+    MT_F_RECORD_OF(configuration_fields, "configuration", "A configuration, answered.");
+#undef THIS
+
+static complex_row complex_row_of(double complex z)
 {
-    mt_json_open(w, member, '[');
-    for (int i = 0; i < n; i++) {
-        mt_json_open_flat(w, NULL, '{');
-        mt_json_put_string(w, "name", ports[i].name);
-        mt_json_put_string(w, "unit", ports[i].unit);
-        mt_json_close(w);
-    }
-    mt_json_close(w);
+    return (complex_row){.re = creal(z), .im = cimag(z)};
 }
 
-static void json_extreme(const response_view *v, int e, mt_json_writer *w)
+/* An extreme with what the parameters do to it; a shortage is remembered by mem. */
+static extreme_row extreme_row_in(const response_view *v, int e, const char *unit,
+                                  mt_arena *mem)
 {
-    char unit[HEADING_TEXT];
-    const extreme_row row = extreme_row_of(v, e, unit);
-    mt_json_open(w, NULL, '{');
-    mt_record_put(w, &extreme_record, &row);
-    if (v->n > 0) {
-        mt_json_open(w, "sensitivities", '[');
-        for (int k = 0; k < v->n; k++) {
-            mt_json_open_flat(w, NULL, '{');
-            mt_json_put_string(w, "parameter", parameter_of(v, k));
-            mt_json_put_number(w, "value", v->value[k]);
-            mt_json_put_number(w, "magnitude_per_percent", percent_of(v, e, k));
-            mt_json_close(w);
-        }
-        mt_json_close(w);
+    char own[HEADING_TEXT];
+    extreme_row row = extreme_row_of(v, e, own);
+    row.unit = unit;
+    row.with_slopes = v->n > 0;
+    row.slopes = mt_arena_alloc(mem, (size_t)v->n, sizeof *row.slopes);
+    for (; row.slopes != NULL && row.n_slopes < v->n; row.n_slopes++) {
+        const int k = row.n_slopes;
+        row.slopes[k] = (magnitude_slope_row){.parameter = parameter_of(v, k),
+                                              .value = v->value[k],
+                                              .per_percent = percent_of(v, e, k)};
     }
-    mt_json_close(w);
+    return row;
 }
 
-static void json_series(const response_view *v, int pair, const char *member, int what,
-                        mt_json_writer *w)
+static void fill_poles(const response_view *v, int pair, mt_arena *mem, response_row *out)
 {
-    mt_json_open_flat(w, member, '[');
-    for (int i = 0; i < v->curve->n; i++) {
-        const double complex h = value_at(v, pair, i);
-        const bool has = isfinite(cabs(h));
-        mt_json_put_number(w, NULL,
-                           what == 2   ? error_at(v, pair, i)
-                           : !has      ? nan("")
-                           : what == 0 ? creal(h)
-                                       : cimag(h));
-    }
-    mt_json_close(w);
-}
-
-static void json_complex(mt_json_writer *w, const char *re, const char *im, double complex z)
-{
-    mt_json_put_number(w, re, creal(z));
-    mt_json_put_number(w, im, cimag(z));
-}
-
-/* Write the poles where requested. */
-static void json_poles(const response_view *v, int pair, mt_json_writer *w)
-{
-    if (v->no_sums != NULL) {
-        mt_json_put_null(w, "poles");
-        mt_json_put_string(w, "no_poles", v->no_sums);
-    }
+    out->with_poles = v->no_sums != NULL || v->sums != NULL;
+    out->with_no_poles = v->no_sums != NULL;
+    out->no_poles = v->no_sums;
+    out->with_polynomial = v->sums != NULL;
     if (v->sums == NULL) {
         return;
     }
     const mt_pole_sum *const sum = &v->sums[pair];
-    mt_json_open(w, "poles", '[');
-    for (int k = 0; k < sum->n; k++) {
-        mt_json_open_flat(w, NULL, '{');
-        json_complex(w, "re", "im", sum->s[k]);
-        json_complex(w, "residue_re", "residue_im", sum->residue[k]);
-        mt_json_close(w);
+    out->poles = mt_arena_alloc(mem, (size_t)sum->n + 1, sizeof *out->poles);
+    out->polynomial = mt_arena_alloc(mem, MT_COUNT(sum->d), sizeof *out->polynomial);
+    for (int k = 0; k < sum->n && out->poles != NULL; k++) {
+        out->poles[out->n_poles++] =
+            (pole_row){complex_row_of(sum->s[k]), complex_row_of(sum->residue[k])};
     }
-    mt_json_close(w);
-    mt_json_open(w, "polynomial", '[');
-    for (int k = 0; k < 3; k++) {
-        mt_json_open_flat(w, NULL, '{');
-        json_complex(w, "re", "im", sum->d[k]);
-        mt_json_close(w);
+    for (int k = 0; k < MT_COUNT(sum->d) && out->polynomial != NULL; k++) {
+        out->polynomial[out->n_polynomial++] = complex_row_of(sum->d[k]);
     }
-    mt_json_close(w);
 }
 
-static void json_pair(const response_view *v, int pair, mt_json_writer *w)
+static void fill_curves(const response_view *v, int pair, response_row *out)
 {
-    char unit[HEADING_TEXT];
-    write_pair_unit(v, pair, unit);
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "input", response_input_of(v, pair)->name);
-    mt_json_put_string(w, "output", response_output_of(v, pair)->name);
-    mt_json_put_string(w, "unit", unit);
-    mt_json_open(w, "extremes", '[');
-    for (int e = 0; e < v->curve->n_extremes; e++) {
-        if (v->curve->extremes[e].pair == pair) {
-            json_extreme(v, e, w);
+    for (int i = 0; i < v->curve->n; i++) {
+        const double complex h = value_at(v, pair, i);
+        const bool has = isfinite(cabs(h));
+        out->re[i] = has ? creal(h) : nan("");
+        out->im[i] = has ? cimag(h) : nan("");
+        out->error[i] = error_at(v, pair, i);
+        if (out->with_vibration) {
+            out->psd[i] = density_at(v, pair, i);
         }
     }
-    mt_json_close(w);
-    json_poles(v, pair, w);
-    json_series(v, pair, "re", 0, w);
-    json_series(v, pair, "im", 1, w);
-    json_series(v, pair, "error", 2, w);
-    if (v->profiled != NULL) {
-        response_vibration_json_pair(v, pair, w);
-    }
-    mt_json_close(w);
 }
 
-static void response_json(const response_view *v, mt_json_writer *w)
+static mt_status fill_vibration(const response_view *v, int pair, mt_arena *mem,
+                                response_row *out, mt_err *err)
+{
+    const mt_vibrated row = row_of(v, pair);
+    const mt_vibration_response *const a = row.response;
+    char unit[UNIT_TEXT];
+    density_unit(v, pair, unit);
+    out->psd_unit = mt_arena_strdup(mem, unit);
+    out->vibration.with_mode = a->end != MT_FORCED_FINITE && a->pole >= 0;
+    if (out->vibration.with_mode) {
+        out->vibration.by_mode = mode_of(v, v->profiled->poles[a->pole]);
+    }
+    return mt_vibrated_values_of(&row, mem, &out->vibration.vibrated, err);
+}
+
+static mt_status response_row_of(const response_view *v, int pair, mt_arena *mem,
+                                 response_row *out, mt_err *err)
+{
+    const size_t n = (size_t)v->curve->n;
+    char unit[HEADING_TEXT];
+    write_pair_unit(v, pair, unit);
+    *out = (response_row){
+        .input = response_input_of(v, pair)->name,
+        .output = response_output_of(v, pair)->name,
+        .unit = mt_arena_strdup(mem, unit),
+        .extremes = mt_arena_alloc(mem, (size_t)v->curve->n_extremes, sizeof *out->extremes),
+        .re = mt_arena_f64(mem, n, 1),
+        .im = mt_arena_f64(mem, n, 1),
+        .error = mt_arena_f64(mem, n, 1),
+        .psd = v->profiled == NULL ? NULL : mt_arena_f64(mem, n, 1),
+        .n = v->curve->n,
+        .with_vibration = v->profiled != NULL,
+    };
+    MT_TRY(mt_arena_check(mem, err));
+    for (int e = 0; e < v->curve->n_extremes; e++) {
+        if (v->curve->extremes[e].pair == pair) {
+            out->extremes[out->n_extremes++] = extreme_row_in(v, e, out->unit, mem);
+        }
+    }
+    fill_poles(v, pair, mem, out);
+    fill_curves(v, pair, out);
+    if (out->with_vibration) {
+        MT_TRY(fill_vibration(v, pair, mem, out, err));
+    }
+    return mt_arena_check(mem, err);
+}
+
+static profile_row profile_row_of(const response_view *v)
+{
+    const mt_vibration *const p = v->profiled->v;
+    return (profile_row){.file = p->path,
+                         .name = p->name,
+                         .axis = mt_vibrated_axis(p),
+                         .rms_m_per_s2 = mt_vibration_rms(p),
+                         .rule = mt_rule_row_of(p)};
+}
+
+static mt_status configuration_row_of(const response_view *v, mt_arena *mem,
+                                      configuration_row *out, mt_err *err)
 {
     const mt_basis *const b = &v->r->basis;
-    mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", v->configuration);
-    mt_json_put_string(w, "method", v->direct ? "direct" : "modes");
     const bool lowest = v->r->a == NULL;
-    mt_json_put_integer(w, "modes", lowest ? v->r->modes->count : b->n_modes);
-    mt_json_put_integer(w, "modes_left_out",
-                        lowest ? v->r->modes->all - v->r->modes->count : b->n_left);
-    if (lowest) {
-        mt_json_put_integer(w, "shapes_of_others", v->r->shapes);
+    *out = (configuration_row){
+        .configuration = v->configuration,
+        .method = v->direct ? "direct" : "modes",
+        .modes = lowest ? v->r->modes->count : b->n_modes,
+        .modes_left_out = lowest ? v->r->modes->all - v->r->modes->count : b->n_left,
+        .with_shapes = lowest,
+        .shapes_of_others = v->r->shapes,
+        .coupled = !b->t.diagonal,
+        .complete = v->curve->complete,
+        .with_profile = v->profiled != NULL,
+        .inputs = v->r->ports.in,
+        .n_inputs = v->r->ports.n_in,
+        .outputs = v->r->ports.out,
+        .n_outputs = v->r->ports.n_out,
+        .frequencies_hz = mt_arena_f64(mem, (size_t)v->curve->n, 1),
+        .responses = mt_arena_alloc(mem, (size_t)pairs_of(v), sizeof *out->responses),
+    };
+    MT_TRY(mt_arena_check(mem, err));
+    if (out->with_profile) {
+        out->profile = profile_row_of(v);
+        out->vibration_method = v->profiled->no_sums == NULL ? "poles" : "quadrature";
     }
-    mt_json_put_bool(w, "coupled", !b->t.diagonal);
-    mt_json_put_bool(w, "complete", v->curve->complete);
-    if (v->profiled != NULL) {
-        response_vibration_json(v, w);
+    for (; out->n_frequencies < v->curve->n; out->n_frequencies++) {
+        out->frequencies_hz[out->n_frequencies] = v->curve->w[out->n_frequencies] / TWO_PI;
     }
-    json_ports(w, "inputs", v->r->ports.n_in, v->r->ports.in);
-    json_ports(w, "outputs", v->r->ports.n_out, v->r->ports.out);
-    mt_json_open_flat(w, "frequencies_hz", '[');
-    for (int i = 0; i < v->curve->n; i++) {
-        mt_json_put_number(w, NULL, v->curve->w[i] / TWO_PI);
+    for (; out->n_responses < pairs_of(v); out->n_responses++) {
+        MT_TRY(
+            response_row_of(v, out->n_responses, mem, &out->responses[out->n_responses], err));
     }
-    mt_json_close(w);
-    mt_json_open(w, "responses", '[');
-    for (int p = 0; p < pairs_of(v); p++) {
-        json_pair(v, p, w);
-    }
-    mt_json_close(w);
-    mt_json_close(w);
+    return MT_OK;
+}
+
+static mt_status response_json(const response_view *v, mt_arena *mem, mt_json_writer *w,
+                               mt_err *err)
+{
+    configuration_row row;
+    MT_TRY(configuration_row_of(v, mem, &row, err));
+    mt_record_put_object(w, NULL, &configuration_record, &row, 0, NULL);
+    return MT_OK;
 }
 
 /* A point of a curve, a row of CSV; JSON has the curves as lists. */
@@ -1068,11 +1278,11 @@ static int show_configuration_response(sink *to, mt_loaded_model *s, int c)
                           .curve = &j.curve,
                           .direct = to->args->given[MT_OPT_DIRECT]};
     mt_loaded_model_warn_overridden(s, c);
-    const mt_status rc = compute_response(&j, &err);
+    mt_status rc = compute_response(&j, &err);
     if (rc == MT_OK) {
         switch (to->args->format) {
         case MT_FORMAT_JSON:
-            response_json(&j.v, &to->w);
+            rc = response_json(&j.v, &j.r.mem, &to->w, &err);
             break;
         case MT_FORMAT_CSV:
             response_csv_rows(&j.v, &to->table);
@@ -1084,7 +1294,8 @@ static int show_configuration_response(sink *to, mt_loaded_model *s, int c)
             mt_loaded_model_note_links(s, c, to->out);
             break;
         }
-    } else if (to->args->format == MT_FORMAT_JSON) {
+    }
+    if (rc != MT_OK && to->args->format == MT_FORMAT_JSON) {
         mt_cli_json_failed(&to->w, j.v.configuration, &err);
     }
     mt_response_free(&j.r);
@@ -1164,5 +1375,6 @@ const mt_command mt_command_response = {
         "parts of a profile, the largest amplitude under each tone, and the peak of both.\n"
         "A configuration that is unstable, has motions that grow, or whose stability rounding "
         "hides, is refused; so is the force of a joint that is redundant with others.",
+    .answer = {&configuration_record, MT_ANSWER_CONFIGURATIONS},
     .run = run_response,
 };

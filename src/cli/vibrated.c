@@ -86,6 +86,70 @@ void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone)
     mt_table_text(t, where(p));
 }
 
+#define THIS mt_vibrated_tone
+static const mt_field tone_fields[] = {
+    MT_F_TEXT("tone", tone, "Its name."),
+    MT_F_ENUM("end", end, mt_forced_end, mt_forced_end_names,
+              "Why there is no finite number; \"finite\": there is one."),
+    MT_F_NUMBER_OR_NULL("frequency_hz", frequency_hz,
+                        "Where in its range the response is largest."),
+    MT_F_NUMBER_OR_NULL("peak", peak, "Peak there [in the unit of the response]."),
+    MT_F_NUMBER_OR_NULL("excess_at_most", excess_at_most,
+                        "Part of the peak by which it may be larger elsewhere in the range."),
+    MT_F_FLAG("at_edge", at_edge, "It is largest at an end of the range."),
+};
+const mt_record mt_vibrated_tone_record =
+    MT_F_RECORD_OF(tone_fields, "vibrated_tone", "The response to one tone.");
+#undef THIS
+
+#define THIS mt_combine_row
+static const mt_field combine_fields[] = {
+    MT_F_NUMBER("sigma", sigma, "Peak of the random parts, in their RMS."),
+    MT_F_ENUM("tones", tones, mt_vibration_sum, mt_vibration_sum_names,
+              "How the peaks of the tones add up."),
+};
+const mt_record mt_combine_record =
+    MT_F_RECORD_OF(combine_fields, NULL, "How the peak follows from the parts.");
+#undef THIS
+
+mt_rule_row mt_rule_row_of(const mt_vibration *v)
+{
+    return (mt_rule_row){.combine = {.sigma = v->sigma, .tones = v->rule},
+                         .marks = v->marks,
+                         .n_marks = v->n_marks};
+}
+
+mt_status mt_vibrated_values_of(const mt_vibrated *v, mt_arena *mem, mt_vibrated_values *out,
+                                mt_err *err)
+{
+    const mt_vibration_response *const r = v->response;
+    *out = (mt_vibrated_values){
+        .end = r->end,
+        .unit = vibrated_unit(v),
+        .rms = r->rms,
+        .rms_error_at_most = r->rms_bound,
+        .sine = r->sine,
+        .peak = r->peak,
+        .in_g = v->is_acceleration,
+        .rms_g = in_g(v, r->rms),
+        .sine_g = in_g(v, r->sine),
+        .peak_g = in_g(v, r->peak),
+        .tones = mt_arena_alloc(mem, (size_t)r->n_tones, sizeof *out->tones),
+    };
+    for (int i = 0; i < r->n_tones && out->tones != NULL; i++) {
+        const mt_sine_peak *const p = &r->tones[i];
+        out->tones[out->n_tones++] = (mt_vibrated_tone){
+            .tone = v->profile->tones[i].label,
+            .end = p->end,
+            .frequency_hz = p->omega / TWO_PI,
+            .peak = mt_vibration_respond_tone(v->profile, r, i),
+            .excess_at_most = p->excess,
+            .at_edge = p->at_edge,
+        };
+    }
+    return mt_arena_check(mem, err);
+}
+
 void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v)
 {
     const mt_vibration_response *const r = v->response;

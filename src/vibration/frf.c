@@ -13,17 +13,13 @@
  * it from 0. */
 static const double UNDAMPED_ULPS = 4.0;
 
+const char *const mt_forced_end_names[MT_FORCED_ENDS] = {[MT_FORCED_FINITE] = "finite",
+                                                         [MT_FORCED_INFINITE] = "infinite",
+                                                         [MT_FORCED_UNSTABLE] = "unstable"};
+
 const char *mt_forced_end_name(mt_forced_end end)
 {
-    switch (end) {
-    case MT_FORCED_FINITE:
-        return "finite";
-    case MT_FORCED_INFINITE:
-        return "infinite";
-    case MT_FORCED_UNSTABLE:
-        break;
-    }
-    return "unstable";
+    return mt_forced_end_names[end];
 }
 
 static bool is_finite(double complex z)

@@ -41,7 +41,9 @@ typedef enum mt_forced_end {
     MT_FORCED_UNSTABLE  /* a pole grows without excitation: there is no steady response */
 } mt_forced_end;
 
-/* "finite", "infinite", "unstable". */
+/* "finite", "infinite", "unstable", in the order of mt_forced_end. */
+enum { MT_FORCED_ENDS = MT_FORCED_UNSTABLE + 1 };
+extern const char *const mt_forced_end_names[MT_FORCED_ENDS];
 const char *mt_forced_end_name(mt_forced_end end);
 
 /* Fails: MT_E_DOMAIN (a number that is not finite), MT_E_MEMORY. O(n^2). */

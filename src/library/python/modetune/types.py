@@ -14,7 +14,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
     "CommandCheck", "CommandDiff", "CommandExamples", "CommandMac", "CommandModes",
-    "CommandProfile", "CommandSchema", "CommandSensitivity", "CommandSimulate", "CommandSweep",
+    "CommandResponse", "CommandSchema", "CommandSensitivity", "CommandSimulate", "CommandSweep",
 ]
 
 
@@ -2289,98 +2289,137 @@ class CommandModesDampedMode(TypedDict):
     residual: float
 
 
-class CommandProfileListed(TypedDict):
-    """A file that is part of the program."""
-
-    name: str
-    text: str
-
-
-class CommandProfileCombine(TypedDict):
+class CommandResponseCombine(TypedDict):
     """How the peak follows from the parts."""
 
     sigma: float
     tones: Literal["sum", "largest", "root_sum_square"]
 
 
-class CommandProfileSpectrum(TypedDict):
-    """With --spectrum: what it does to one mass."""
+class CommandResponseProfile(TypedDict):
+    """With --vibration: the profile."""
 
-    damping_ratio: float
-    masses: List["CommandProfileMass"]
-
-
-class _CommandProfileProfileAlways(TypedDict):
     file: str
     name: Optional[str]
-    source: Optional[str]
-    axis: Optional[str]
-    rms_g: float
+    axis: Optional[Literal["x", "y", "z"]]
     rms_m_per_s2: float
-    random: List["CommandProfileRandom"]
-    tones: List["CommandProfileTone"]
-    combine: "CommandProfileCombine"
+    combine: "CommandResponseCombine"
     marks: List[str]
 
 
-class CommandProfileProfile(_CommandProfileProfileAlways, total=False):
-    """What a profile of vibration requires."""
-
-    spectrum: "CommandProfileSpectrum"
-
-
-class CommandProfileRandom(TypedDict):
-    """A random part of a profile."""
-
-    rms_g: float
-    rms_m_per_s2: float
-    published_rms_g: Optional[float]
-    origin: Optional[Literal["published", "identified", "assumed"]]
-    source: Optional[str]
-    breakpoints: List["CommandProfileBreakpoint"]
+class _CommandResponseConfigurationAlways(TypedDict):
+    configuration: str
+    method: Literal["direct", "modes"]
+    modes: int
+    modes_left_out: int
+    coupled: bool
+    complete: bool
+    inputs: List["CommandResponsePort"]
+    outputs: List["CommandResponsePort"]
+    frequencies_hz: List[Optional[float]]
+    responses: List["CommandResponseResponse"]
 
 
-class CommandProfileBreakpoint(TypedDict):
-    """A breakpoint of a spectral density."""
+class CommandResponseConfiguration(_CommandResponseConfigurationAlways, total=False):
+    """A configuration, answered."""
 
-    frequency_hz: float
-    psd_g2_per_hz: float
-    psd_m2_per_s3: float
-    slope_db_per_octave: Optional[float]
-
-
-class CommandProfileTone(TypedDict):
-    """A tone of a profile."""
-
-    tone: str
-    lower_hz: float
-    upper_hz: float
-    acceleration_g: float
-    acceleration_m_per_s2: float
-    origin: Optional[Literal["published", "identified", "assumed"]]
-    source: Optional[str]
+    shapes_of_others: int
+    profile: "CommandResponseProfile"
+    vibration_method: Literal["poles", "quadrature"]
 
 
-class _CommandProfileMassAlways(TypedDict):
-    natural_frequency_hz: float
+class CommandResponseFailed(TypedDict):
+    """A configuration without an answer."""
+
+    configuration: str
+    error: str
+
+
+class CommandResponsePort(TypedDict):
+    """An input or output."""
+
+    name: str
+    unit: str
+
+
+class _CommandResponseVibrationAlways(TypedDict):
     end: Literal["finite", "infinite", "unstable"]
     unit: str
     rms: Optional[float]
     rms_error_at_most: Optional[float]
     sine: Optional[float]
     peak: Optional[float]
-    tones: List["CommandProfileVibratedTone"]
+    tones: List["CommandResponseVibratedTone"]
 
 
-class CommandProfileMass(_CommandProfileMassAlways, total=False):
-    """The absolute acceleration of one mass on a spring."""
+class CommandResponseVibration(_CommandResponseVibrationAlways, total=False):
+    """With --vibration: what the profile does to the output."""
 
     rms_g: Optional[float]
     sine_g: Optional[float]
     peak_g: Optional[float]
+    by_mode: int
 
 
-class CommandProfileVibratedTone(TypedDict):
+class _CommandResponseResponseAlways(TypedDict):
+    input: str
+    output: str
+    unit: str
+    extremes: List["CommandResponseExtreme"]
+    re: List[Optional[float]]
+    im: List[Optional[float]]
+    error: List[Optional[float]]
+
+
+class CommandResponseResponse(_CommandResponseResponseAlways, total=False):
+    """The response of one output to one input."""
+
+    poles: Optional[List["CommandResponsePole"]]
+    no_poles: str
+    polynomial: List["CommandResponseCoefficient"]
+    vibration: "CommandResponseVibration"
+    psd_unit: str
+    psd: List[Optional[float]]
+
+
+class _CommandResponseExtremeAlways(TypedDict):
+    kind: Literal["peak", "resonance", "antiresonance", "minimum"]
+    frequency_hz: float
+    magnitude: Optional[float]
+    phase_deg: Optional[float]
+
+
+class CommandResponseExtreme(_CommandResponseExtremeAlways, total=False):
+    """A peak, or a minimum."""
+
+    sensitivities: List["CommandResponseSensitivity"]
+
+
+class CommandResponseSensitivity(TypedDict):
+    """What one parameter does to the magnitude."""
+
+    parameter: str
+    value: float
+    magnitude_per_percent: Optional[float]
+
+
+class CommandResponsePole(TypedDict):
+    """A pole of the response with its residue."""
+
+    re: float
+    im: float
+    residue_re: float
+    residue_im: float
+
+
+class CommandResponseCoefficient(TypedDict):
+    """A complex coefficient."""
+
+    re: float
+    im: float
+
+
+class CommandResponseVibratedTone(TypedDict):
     """The response to one tone."""
 
     tone: str
@@ -2441,6 +2480,13 @@ class CommandSensitivityNoDerivative(TypedDict):
     joints: List[str]
 
 
+class CommandSimulateCombine(TypedDict):
+    """The rule that combines peaks."""
+
+    sigma: float
+    tones: Literal["sum", "largest", "root_sum_square"]
+
+
 class CommandSimulateOutput(TypedDict):
     """A quantity over time."""
 
@@ -2491,13 +2537,6 @@ class CommandSimulateTone(TypedDict):
     damping_ratio: float
     amplitude: float
     phase_rad: float
-
-
-class CommandSimulateCombine(TypedDict):
-    """How the peak follows from the parts."""
-
-    sigma: float
-    tones: Literal["sum", "largest", "root_sum_square"]
 
 
 class CommandSimulateVibration(TypedDict):
@@ -2620,7 +2659,10 @@ CommandModes = Union[
     List[Union["CommandModesConfiguration", "CommandModesFailed"]], "CommandModesConfiguration",
     "CommandModesFailed"
 ]
-CommandProfile = Union[List["CommandProfileListed"], "CommandProfileProfile"]
+CommandResponse = Union[
+    List[Union["CommandResponseConfiguration", "CommandResponseFailed"]],
+    "CommandResponseConfiguration", "CommandResponseFailed"
+]
 CommandSchema = List["CommandSchemaListed"]
 CommandSensitivity = Union[
     List[Union["CommandSensitivityConfiguration", "CommandSensitivityFailed"]],
