@@ -652,8 +652,8 @@ enum { SHIFTS = 2, ROUNDS = 4 };
 enum { SUBSPACE = 8, LOWERINGS = 20 };
 static const double RESOLVED = 3e-2;
 static const double ROUGHLY = 1e-6;
-/* A shift is near enough at so many times the lowest mode that the subspace shows. */
-static const double NEAR_SHIFT = 1.5;
+/* A lambda that one more step changes by no more than this is the lowest one. */
+static const double SETTLED = 0.05;
 /* Columns of Lanczos' method at a time. */
 enum { BLOCK = 4 };
 /* Roundings of a strain, and strains so many times their rounding that are none. */
@@ -912,7 +912,8 @@ static mt_status find_lowest_ritz(sparse *s, int count, const double *x, double 
  * Far above the lowest modes a shift leaves their 1/(lambda + s) so close together that
  * Lanczos' method takes some (s/lambda)^(1/2) steps, and the largest K_ii/M_ii, of which the
  * first shift is a part, grows with the fourth power of a ring's bodies. Each step of a
- * subspace's iteration shows a lower lambda, which is the next shift.
+ * subspace's iteration shows a lower lambda, which is the next shift, but where a step more
+ * shows the same one, and the shift fits that.
  */
 static mt_status lower_shift(sparse *s, mt_err *err)
 {
@@ -922,20 +923,26 @@ static mt_status lower_shift(sparse *s, mt_err *err)
     double *x = mt_arena_f64(s->mem, n, (size_t)count);
     double *y = mt_arena_f64(s->mem, n, (size_t)count);
     uint32_t state = 1;
+    bool moved = false;
     MT_TRY(mt_arena_check(s->mem, err));
     for (size_t i = 0; i < n * (size_t)count; i++) {
         state = (state * 1664525U) + 1013904223U;
         x[i] = (((double)(state >> 8U) / 8388608.0) - 1.0) * s->p->unit[i % n];
     }
     bool on = orthonormalise(s, count, x);
+    double before = HUGE_VAL;
     for (int i = 0; i < LOWERINGS && on; i++) {
         const double was = s->shift;
         double lowest = HUGE_VAL;
         MT_TRY(find_lowest_ritz(s, count, x, y, &lowest, err));
-        const bool above = was > NEAR_SHIFT * lowest;
-        const bool below = i > 0 && lowest < HUGE_VAL && was < LEAST_SHIFT * lowest;
-        on = (above || below) && orthonormalise(s, count, y);
-        if (on) {
+        const bool settled = fabs(before - lowest) <= SETTLED * lowest;
+        const bool fits = was <= MOST_SHIFT * lowest && was >= LEAST_SHIFT * lowest;
+        const bool below = (settled || moved) && was < LEAST_SHIFT * lowest;
+        const bool move = i > 0 && lowest < HUGE_VAL && (was > lowest || below);
+        before = lowest;
+        on = (i == 0 || move) && !(settled && fits) && orthonormalise(s, count, y);
+        if (on && move) {
+            moved = true;
             MT_TRY(sparse_factor(s, lowest, &on, err));
         }
         if (!on && s->shift != was) {
