@@ -190,6 +190,15 @@ static void add_inertia(mt_motion *o, const mt_placement *at, const mt_term *t,
     double force[MT_LOCAL] = {0.0};
     double change[MT_LOCAL] = {0.0}; /* (dM/dt) v */
     const bool moves = kind != MT_INERTIA_TRANSLATION && kind != MT_INERTIA_ROTATION;
+    if (kind == MT_INERTIA_TRANSLATION) { /* of a centre: the same wherever it is */
+        for (int k = 0; k < sys->dimension; k++) {
+            const int dof = mt_local_dof(sys, t->body, k);
+            if (dof >= 0) {
+                o->mass[dof + ((ptrdiff_t)dof * sys->nq)] += weight;
+            }
+        }
+        return;
+    }
     local_velocity(sys, t->body, velocity, v);
     mt_term_rows(&o->lin->data, MT_TERM_MASS, t, o->tangent, o->rows[0]);
     for (int r = 0; r < products_of(t); r++) {
@@ -233,6 +242,29 @@ static void add_dampers(mt_motion *o, const double *velocity)
     }
 }
 
+/* Add factor times a measure to row i of A, A v and b; squares: of its entries, and of their
+ * change along the motion, turns as arcs. */
+static void add_gradient(mt_motion *o, int i, const mt_measure_def *def, double factor,
+                         const mt_relative_jet *jet, const double *v, double squares[2])
+{
+    const mt_system *const sys = o->lin->sys;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(sys, def->body, k);
+        const mt_cx g = mt_relative_sign(k) * jet->g[mt_relative_of(k)];
+        if (dof < 0 || (creal(g) == 0.0 && cimag(g) == 0.0)) {
+            continue;
+        }
+        const double a = factor * creal(g);
+        const double slope = factor * cx_derivative(g);
+        const double unit = k % 6 < 3 ? 1.0 : 1.0 / sys->length_m;
+        o->a[i + ((ptrdiff_t)dof * o->m)] += a;
+        o->rate[i] += a * v[dof];
+        o->b[i] -= slope * v[dof];
+        squares[0] += a * unit * a * unit;
+        squares[1] += slope * unit * slope * unit;
+    }
+}
+
 static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
 {
     const mt_data *const d = &o->lin->data;
@@ -242,8 +274,7 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
     memset(o->a, 0, (size_t)o->m * (size_t)o->nq * sizeof *o->a);
     o->swing = 0.0;
     for (int i = 0; i < o->m; i++) {
-        double squares = 0.0;
-        double changes = 0.0;
+        double squares[2] = {0.0};
         const mt_constraint_def *const c = &sys->constraints[i];
         double value = -creal(mt_data_target(d, i, at));
         o->rate[i] = 0.0;
@@ -253,22 +284,9 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
             const double factor = creal(mt_data_scalar(d, c->coefficient[t], 1.0));
             mt_data_relative(d, def, &moving, false, NULL, &jet);
             value += factor * creal(jet.value);
-            for (int k = 0; k < MT_LOCAL; k++) {
-                const int dof = mt_local_dof(sys, def->body, k);
-                if (dof >= 0) {
-                    const mt_cx g = mt_relative_sign(k) * jet.g[mt_relative_of(k)];
-                    const double a = factor * creal(g);
-                    o->a[i + ((ptrdiff_t)dof * o->m)] += a;
-                    o->rate[i] += a * v[dof];
-                    const double slope = factor * cx_derivative(g);
-                    const double unit = k % 6 < 3 ? 1.0 : 1.0 / sys->length_m;
-                    o->b[i] -= slope * v[dof];
-                    squares += a * unit * a * unit;
-                    changes += slope * unit * slope * unit;
-                }
-            }
+            add_gradient(o, i, def, factor, &jet, v, squares);
         }
-        o->swing += squares > 0.0 ? changes / squares : 0.0;
+        o->swing += squares[0] > 0.0 ? squares[1] / squares[0] : 0.0;
         o->gap[i] = value - mt_constraint_turns(d, i, value);
     }
     o->swing = sqrt(o->swing);

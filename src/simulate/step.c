@@ -423,11 +423,13 @@ mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err
     MT_TRY(move_placement(s, t, y, drive, err));
     MT_TRY(accelerate(s, t, v, drive, out + nq, out + (2 * nq), err));
     memcpy(s->rows, s->push, (size_t)nq * sizeof *s->rows);
-    for (int i = 0; i < s->opt->n_gauges; i++) {
+    memset(out + (2 * nq) + 1, 0, (size_t)s->opt->n_gauges * sizeof *out);
+    for (int i = 0; i < s->n_integrals; i++) {
         double *const row = s->rows + ((1 + i) * nq);
-        mt_motion_gauge(&s->motion, &s->at, v, s->opt->gauges[i], &s->gauge);
+        const mt_gauge gauge = s->opt->gauges[s->integral[i]];
+        mt_motion_gauge(&s->motion, &s->at, v, gauge, &s->gauge);
         memcpy(row, s->gauge.row, (size_t)nq * sizeof *row);
-        out[(2 * nq) + 1 + i] = mt_dot(s->nq, row, v);
+        out[(2 * nq) + 1 + s->integral[i]] = mt_dot(s->nq, row, v);
     }
     return MT_OK;
 }
@@ -507,21 +509,30 @@ static mt_status least_change(mt_sim *s, const mt_elimination *e, const double *
     const size_t size = (size_t)s->gauss.n * sizeof(double);
     double *const kept = mt_arena_f64(s->mem, (size_t)s->gauss.n, 1);
     MT_TRY(mt_arena_check(s->mem, err));
-    memcpy(kept, s->gauss.x, size);
-    memset(s->gauss.x, 0, size);
+    if (size > 0) { /* the solution for accelerations is not near */
+        memcpy(kept, s->gauss.x, size);
+        memset(s->gauss.x, 0, size);
+    }
     memset(s->force, 0, (size_t)s->nq * sizeof *s->force);
     const mt_gauss g = {.m = s->m, .mass = o->mass, .force = s->force, .a = o->a, .b = b};
     MT_TRY(mt_gauss_solve_near(&s->gauss, s->sys, &g, s->along, NULL, s->mem, err));
-    memcpy(s->gauss.x, kept, size);
+    if (size > 0) {
+        memcpy(s->gauss.x, kept, size);
+    }
     return MT_OK;
 }
 
-/* Project s->at, with velocities v, onto the joints. */
-static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_err *err)
+/* Project s->at, with velocities v, onto the joints; *out: their elimination there, in s->mem.
+ */
+static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_elimination *out,
+                              mt_err *err)
 {
     mt_motion *const o = &s->motion;
     const int d = drive_of(s);
-    for (int i = 0; i < CLOSING_STEPS && s->m > 0; i++) {
+    if (s->m == 0) {
+        return mt_eliminate_factor(s->sys, 0, o->a, s->mem, out, err);
+    }
+    for (int i = 0; i < CLOSING_STEPS; i++) {
         mt_elimination e;
         mt_motion_eval(o, &s->at, v);
         s->evaluations++;
@@ -544,6 +555,7 @@ static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_er
         }
         MT_TRY(least_change(s, &e, o->rate, err));
         mt_axpy(s->nq, -1.0, s->along, v);
+        *out = e;
         break;
     }
     return MT_OK;
@@ -591,14 +603,16 @@ mt_status mt_sim_accept(mt_sim *s, double t, mt_err *err)
     double drive[3];
     memcpy(s->begin, s->y, (size_t)s->n * sizeof *s->begin);
     MT_TRY(move_placement(s, t, s->y, drive, err));
-    MT_TRY(close_joints(s, s->begin + s->nq, drive, err));
-    mt_arena_rewind(s->mem, mark);
+    mt_elimination closed;
+    MT_TRY(close_joints(s, s->begin + s->nq, drive, &closed, err));
     straighten(s->sys, s->at.pose);
     mt_motion_turns(&s->motion, &s->at);
     mt_placement_copy(s->sys, &s->at, &s->base);
-    mt_collocation_accept(s, t);
     memset(s->begin, 0, (size_t)s->nq * sizeof *s->begin);
-    return begin_step(s, t, err);
+    MT_TRY(begin_step(s, t, err));
+    MT_TRY(mt_collocation_accept(s, t, &closed, err));
+    mt_arena_rewind(s->mem, mark);
+    return MT_OK;
 }
 
 static double base_acceleration(const mt_sim *s, int axis, double t, mt_err *err, mt_status *rc)
@@ -668,7 +682,14 @@ static mt_status allocate_step_work(mt_sim *s, mt_err *err)
     for (int i = 0; i < MT_COUNT(of_nq); i++) {
         *of_nq[i] = mt_arena_f64(s->mem, nq, 1);
     }
-    s->rows = mt_arena_f64(s->mem, nq, (size_t)1 + (size_t)s->opt->n_gauges);
+    s->integral = mt_arena_alloc(s->mem, (size_t)s->opt->n_gauges, sizeof *s->integral);
+    MT_TRY(mt_arena_check(s->mem, err));
+    for (int i = 0; i < s->opt->n_gauges; i++) {
+        if (!mt_motion_has_value(s->sys, s->opt->gauges[i])) {
+            s->integral[s->n_integrals++] = i;
+        }
+    }
+    s->rows = mt_arena_f64(s->mem, nq, (size_t)1 + (size_t)s->n_integrals);
     s->b = mt_arena_f64(s->mem, m, 1);
     s->lambda = mt_arena_f64(s->mem, m, 1);
     s->speed = mt_arena_f64(s->mem, (size_t)s->opt->n_gauges, 1);

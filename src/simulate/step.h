@@ -47,7 +47,7 @@ enum { MT_ODE_ORDER = 8 };
  *     u  [nq]  increments from the pose `base`, where the step began
  *     v  [nq]  velocities
  *     w  [1]   work of inputs and dampers
- *     z  [n_gauges]  integrals of the gauges' velocities
+ *     z  [n_gauges]  integrals of velocities of gauges that have no value; 0 of the others
  */
 typedef struct mt_collocation mt_collocation;
 
@@ -67,20 +67,22 @@ typedef struct mt_sim {
     bool stalls;                 /* the last step is too long for the collocation */
     int nq;
     int m;
-    int n;          /* of y */
-    double *y;      /* at the end of the step */
-    double *begin;  /* at its beginning: u = 0 */
-    double *slope;  /* slope at its beginning */
-    double *error;  /* of the step */
-    double *probe;  /* [n] */
-    double *along;  /* [nq] */
-    double *push;   /* [nq] inputs */
-    double *force;  /* [nq] */
-    double *b;      /* [m] */
-    double *lambda; /* [m] */
-    double *weight; /* [nq] 1, or the model's length on rotations */
-    double *speed;  /* [n_gauges] at the beginning of the step */
-    double *rows;   /* nq x (1 + n_gauges): forces of the inputs, rows of the gauges */
+    int n;           /* of y */
+    double *y;       /* at the end of the step */
+    double *begin;   /* at its beginning: u = 0 */
+    double *slope;   /* slope at its beginning */
+    double *error;   /* of the step */
+    double *probe;   /* [n] */
+    double *along;   /* [nq] */
+    double *push;    /* [nq] inputs */
+    double *force;   /* [nq] */
+    double *b;       /* [m] */
+    double *lambda;  /* [m] */
+    double *weight;  /* [nq] 1, or the model's length on rotations */
+    double *speed;   /* [n_gauges] at the beginning of the step */
+    int n_integrals; /* gauges that have no value, only the integral of their velocity */
+    int *integral;   /* [n_integrals] */
+    double *rows;    /* nq x (1 + n_integrals): forces of the inputs, rows of these gauges */
     mt_gauge_motion gauge;
     double still;     /* drive of the rest position */
     int rank;         /* rank of the joints' equations at the start; -1: not known yet */
@@ -158,7 +160,8 @@ mt_status mt_collocation_new(mt_sim *s, mt_err *err);
 /* The step of mt_sim_advance where there is s->collocation. s->stalls: its iteration does not
  * converge, the step is too long. */
 mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err);
-/* After a step to t, which has moved s->base; nothing where there is no collocation. */
-void mt_collocation_accept(mt_sim *s, double t);
+/* After a step to t, which has moved s->base, where s->slope was computed and the joints have
+ * this elimination; nothing where there is no collocation. Fails as mt_collocation_new. */
+mt_status mt_collocation_accept(mt_sim *s, double t, mt_elimination *closed, mt_err *err);
 
 #endif

@@ -220,12 +220,11 @@ struct mt_collocation {
     int nq;
     int n;     /* modes */
     int stiff; /* the first stiff one */
-    int rates; /* of y behind positions and velocities */
+    int rates; /* of y behind positions and velocities: power, gauges' velocities */
     mt_filon rule;
     double since; /* the lot began: time, evaluations */
     long evaluations;
     int steps;
-    bool begun;     /* the matrices and the first point belong to s->base */
     bool whole;     /* phi are all motions that the joints allow */
     double *w;      /* [n] */
     double *phi;    /* nq x n */
@@ -248,6 +247,8 @@ struct mt_collocation {
     double *rate; /* [POINTS] of the first, without the product of its row with V */
     double *y;    /* as of mt_sim */
     double *slope;
+    int unknowns;          /* of mt_gauss_near */
+    double *found;         /* unknowns x POINTS: solutions of the last round */
     double *m2;            /* n x POINTS: p N_2 */
     double *e;             /* n x POINTS: modes in eta */
     double *de;            /* in V */
@@ -290,27 +291,21 @@ static mt_status modes_of_springs(mt_sim *s, mt_collocation *q, const mt_elimina
     return MT_OK;
 }
 
-/* Modes of the springs at s->base, and what is known there: s->motion and s->slope are those of
- * the beginning of a step. */
-static mt_status begin_collocation(mt_sim *s, mt_collocation *q, mt_err *err)
+/* Modes of the springs at s->base, where s->motion was evaluated. e: with z. */
+static mt_status begin_modes(mt_sim *s, mt_collocation *q, const mt_elimination *e, mt_err *err)
 {
-    const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     const int nq = q->nq;
-    mt_elimination e;
-    MT_TRY(mt_eliminate(s->sys, s->m, s->motion.a, s->mem, &e, err));
+    const int n = e->n;
     mt_motion_stiffness(&s->motion, &s->base, q->k);
-    const int n = e.n;
     double *const mz = mt_arena_f64(s->mem, (size_t)nq, (size_t)n);
     double *const mass = mt_arena_f64(s->mem, (size_t)n, (size_t)n);
     double *const stiff = mt_arena_f64(s->mem, (size_t)n, (size_t)n);
     MT_TRY(mt_arena_check(s->mem, err));
-    mt_gemm(false, false, nq, n, nq, 1.0, s->motion.mass, nq, e.z, nq, 0.0, mz, nq);
-    mt_gemm(true, false, n, n, nq, 1.0, e.z, nq, mz, nq, 0.0, mass, n);
-    mt_gemm(false, false, nq, n, nq, 1.0, q->k, nq, e.z, nq, 0.0, mz, nq);
-    mt_gemm(true, false, n, n, nq, 1.0, e.z, nq, mz, nq, 0.0, stiff, n);
-    MT_TRY(modes_of_springs(s, q, &e, mass, stiff, err));
-    mt_arena_rewind(s->mem, mark);
-    return MT_OK;
+    mt_gemm(false, false, nq, n, nq, 1.0, s->motion.mass, nq, e->z, nq, 0.0, mz, nq);
+    mt_gemm(true, false, n, n, nq, 1.0, e->z, nq, mz, nq, 0.0, mass, n);
+    mt_gemm(false, false, nq, n, nq, 1.0, q->k, nq, e->z, nq, 0.0, mz, nq);
+    mt_gemm(true, false, n, n, nq, 1.0, e->z, nq, mz, nq, 0.0, stiff, n);
+    return modes_of_springs(s, q, e, mass, stiff, err);
 }
 
 /* True where the highest frequencies are well above the others and above the rate of the
@@ -329,43 +324,6 @@ static bool is_stiff(const mt_sim *s, const mt_collocation *q)
         slow = fmax(slow, q->w[i]);
     }
     return apart;
-}
-
-mt_status mt_collocation_new(mt_sim *s, mt_err *err)
-{
-    mt_collocation *const q = mt_arena_alloc(s->mem, 1, sizeof *q);
-    const size_t nq = (size_t)s->nq;
-    MT_TRY(mt_arena_check(s->mem, err));
-    q->nq = s->nq;
-    q->rates = 1 + s->opt->n_gauges;
-    double **const square[] = {&q->phi, &q->p, &q->across, &q->k};
-    double **const at_points[] = {&q->eta,  &q->xi,      &q->v,  &q->n1, &q->n2, &q->next,
-                                  &q->last, &q->past_n2, &q->m2, &q->e,  &q->de, &q->past_eta};
-    double **const of_nq[] = {&q->w, &q->e0};
-    for (int i = 0; i < MT_COUNT(square); i++) {
-        *square[i] = mt_arena_f64(s->mem, nq, nq);
-    }
-    for (int i = 0; i < MT_COUNT(at_points); i++) {
-        *at_points[i] = mt_arena_f64(s->mem, nq, POINTS);
-    }
-    for (int i = 0; i < MT_COUNT(of_nq); i++) {
-        *of_nq[i] = mt_arena_f64(s->mem, nq, 1);
-    }
-    q->y = mt_arena_f64(s->mem, (size_t)s->n, 1);
-    q->slope = mt_arena_f64(s->mem, (size_t)s->n, 1);
-    q->rate = mt_arena_f64(s->mem, POINTS, 1);
-    q->rows = mt_arena_f64(s->mem, nq, (size_t)q->rates * POINTS);
-    q->of = mt_arena_alloc(s->mem, nq, sizeof *q->of);
-    MT_TRY(mt_arena_check(s->mem, err));
-    mt_filon_make(&q->rule);
-    q->zero.x = nan("");
-    for (int i = 0; i < s->nq; i++) {
-        q->of[i].x = nan("");
-    }
-    mt_filon_weigh(&q->rule, 0.0, &q->zero);
-    MT_TRY(begin_collocation(s, q, err));
-    s->collocation = is_stiff(s, q) ? q : NULL;
-    return MT_OK;
 }
 
 static void put_twist(const mt_system *sys, int body, const double in[6], double *x)
@@ -571,14 +529,85 @@ static void note_rates(mt_sim *s, mt_collocation *q, int i, const double *v,
     }
 }
 
-/* N_2 at point i, from the states there; *err as of the accelerations. */
-static mt_status evaluate_point(mt_sim *s, mt_collocation *q, int i, double t, mt_err *err)
+/* Modes, states and N_2 at the beginning of a step, where s->motion was evaluated for s->slope.
+ * Scratch memory stays in s->mem. */
+static mt_status begin_collocation(mt_sim *s, mt_collocation *q, mt_elimination *e, mt_err *err)
 {
+    const int nq = q->nq;
+    e->z = mt_arena_f64(s->mem, (size_t)nq, (size_t)e->n);
+    MT_TRY(mt_arena_check(s->mem, err));
+    MT_TRY(mt_eliminate_basis(e, s->mem, err));
+    MT_TRY(begin_modes(s, q, e, err));
+    memset(q->xi, 0, (size_t)nq * sizeof *q->xi);
+    memset(q->eta, 0, (size_t)nq * sizeof *q->eta);
+    memset(q->n1, 0, (size_t)nq * sizeof *q->n1);
+    memcpy(q->v, s->begin + nq, (size_t)nq * sizeof *q->v);
+    note_rates(s, q, 0, q->v, s->slope);
+    to_local(s->sys, q->xi, q->v, s->slope + nq, q->n2);
+    return MT_OK;
+}
+
+mt_status mt_collocation_new(mt_sim *s, mt_err *err)
+{
+    mt_collocation *const q = mt_arena_alloc(s->mem, 1, sizeof *q);
+    const size_t nq = (size_t)s->nq;
+    MT_TRY(mt_arena_check(s->mem, err));
+    q->nq = s->nq;
+    q->rates = 1 + s->n_integrals;
+    q->unknowns = s->gauss.n;
+    double **const square[] = {&q->phi, &q->p, &q->across, &q->k};
+    double **const at_points[] = {&q->eta,  &q->xi,      &q->v,  &q->n1, &q->n2, &q->next,
+                                  &q->last, &q->past_n2, &q->m2, &q->e,  &q->de, &q->past_eta};
+    double **const of_nq[] = {&q->w, &q->e0};
+    for (int i = 0; i < MT_COUNT(square); i++) {
+        *square[i] = mt_arena_f64(s->mem, nq, nq);
+    }
+    for (int i = 0; i < MT_COUNT(at_points); i++) {
+        *at_points[i] = mt_arena_f64(s->mem, nq, POINTS);
+    }
+    for (int i = 0; i < MT_COUNT(of_nq); i++) {
+        *of_nq[i] = mt_arena_f64(s->mem, nq, 1);
+    }
+    q->y = mt_arena_f64(s->mem, (size_t)s->n, 1);
+    q->slope = mt_arena_f64(s->mem, (size_t)s->n, 1);
+    q->rate = mt_arena_f64(s->mem, POINTS, 1);
+    q->found = mt_arena_f64(s->mem, (size_t)q->unknowns, POINTS);
+    q->rows = mt_arena_f64(s->mem, nq, (size_t)q->rates * POINTS);
+    q->of = mt_arena_alloc(s->mem, nq, sizeof *q->of);
+    MT_TRY(mt_arena_check(s->mem, err));
+    mt_filon_make(&q->rule);
+    q->zero.x = nan("");
+    for (int i = 0; i < s->nq; i++) {
+        q->of[i].x = nan("");
+    }
+    mt_filon_weigh(&q->rule, 0.0, &q->zero);
+    const mt_arena_mark mark = mt_arena_get_mark(s->mem);
+    mt_elimination e;
+    MT_TRY(mt_eliminate_factor(s->sys, s->m, s->motion.a, s->mem, &e, err));
+    MT_TRY(begin_collocation(s, q, &e, err));
+    mt_arena_rewind(s->mem, mark);
+    s->collocation = is_stiff(s, q) ? q : NULL;
+    return MT_OK;
+}
+
+/* N_2 at point i, from the states there; in the first round the solution at the point before
+ * is near, then that of the last round. *err as of the accelerations. */
+static mt_status evaluate_point(mt_sim *s, mt_collocation *q, int i, double t, bool first,
+                                mt_err *err)
+{
+    double *const found = q->found + ((ptrdiff_t)i * q->unknowns);
+    const size_t size = (size_t)q->unknowns * sizeof *found;
+    if (!first && size > 0) {
+        memcpy(s->gauss.x, found, size);
+    }
     const ptrdiff_t nq = q->nq;
     double *const v = q->y + nq;
     double *const n2 = q->n2 + (i * nq);
     to_global(s->sys, q->xi + (i * nq), q->v + (i * nq), q->y, v);
     MT_TRY(mt_sim_slope(s, t, q->y, q->slope, err));
+    if (size > 0) {
+        memcpy(found, s->gauss.x, size);
+    }
     note_rates(s, q, i, v, q->slope);
     to_local(s->sys, q->xi + (i * nq), q->v + (i * nq), q->slope + nq, n2);
     add_springs(q, q->n, 1, 1.0, q->eta + (i * nq), n2);
@@ -731,9 +760,11 @@ static void finish_collocation(mt_sim *s, mt_collocation *q, double h)
     const ptrdiff_t nq = q->nq;
     const ptrdiff_t end = DEGREE * nq;
     to_global(s->sys, q->xi + end, q->v + end, s->y, s->y + nq);
-    for (int k = 0; k < q->rates; k++) {
-        s->y[(2 * nq) + k] = s->begin[(2 * nq) + k] + integrate(q, k, h);
-        s->error[(2 * nq) + k] = 0.0;
+    memcpy(s->y + (2 * nq), s->begin + (2 * nq), (size_t)(s->n - (2 * s->nq)) * sizeof *s->y);
+    memset(s->error + (2 * nq), 0, (size_t)(s->n - (2 * s->nq)) * sizeof *s->error);
+    s->y[2 * nq] += integrate(q, 0, h);
+    for (int k = 0; k < s->n_integrals; k++) {
+        s->y[(2 * nq) + 1 + s->integral[k]] += integrate(q, 1 + k, h);
     }
     estimate_error(s, q, h);
 }
@@ -805,27 +836,28 @@ static void predict(mt_collocation *q, double h)
 
 /* Update after a step to t, which has moved s->base. Collocation ends here where it is not
  * faster. */
-void mt_collocation_accept(mt_sim *s, double t)
+mt_status mt_collocation_accept(mt_sim *s, double t, mt_elimination *closed, mt_err *err)
 {
     mt_collocation *const q = s->collocation;
     if (q == NULL) {
-        return;
+        return MT_OK;
     }
-    q->begun = false;
     keep_past(s, q, t);
     s->stiff_steps++;
     if (++q->steps < LOT) {
-        return;
+        return begin_collocation(s, q, closed, err);
     }
     const double pairs = (double)(s->evaluations - q->evaluations) / PAIR_EVALUATIONS;
     const double highest = q->n > 0 ? q->w[q->n - 1] : 0.0;
     if ((t - q->since) * highest < PAIR_STEP * pairs) {
         s->collocation = NULL;
         s->stalls = false;
+        return MT_OK;
     }
     q->steps = 0;
     q->since = t;
     q->evaluations = s->evaluations;
+    return begin_collocation(s, q, closed, err);
 }
 
 /* The weights of a step h. A slow mode's frequency that differs by little is as good: N_2 has
@@ -841,30 +873,12 @@ static void weigh(mt_collocation *q, double h)
     }
 }
 
-/* States and N_2 at the beginning of a step, where s->motion was evaluated for s->slope. */
-static mt_status begin_states(mt_sim *s, mt_collocation *q, mt_err *err)
-{
-    const int nq = q->nq;
-    MT_TRY(begin_collocation(s, q, err));
-    memset(q->xi, 0, (size_t)nq * sizeof *q->xi);
-    memset(q->eta, 0, (size_t)nq * sizeof *q->eta);
-    memset(q->n1, 0, (size_t)nq * sizeof *q->n1);
-    memcpy(q->v, s->begin + nq, (size_t)nq * sizeof *q->v);
-    note_rates(s, q, 0, q->v, s->slope);
-    to_local(s->sys, q->xi, q->v, s->slope + nq, q->n2);
-    q->begun = true;
-    return MT_OK;
-}
-
 /* Advance s->begin by a step h from t into s->y, its error in s->error. s->stalls: the
  * iteration did not converge, the step is too long. Fails as mt_sim_slope. */
 mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err)
 {
     mt_collocation *const q = s->collocation;
     const ptrdiff_t nq = q->nq;
-    if (!q->begun) {
-        MT_TRY(begin_states(s, q, err));
-    }
     q->v0 = s->begin + nq;
     q->tried_h = h;
     q->tried_end = t + h;
@@ -882,7 +896,7 @@ mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err)
     (void)update_point_states(s, q, h);
     for (int round = 0;; round++) {
         for (int i = 1; i < POINTS; i++) {
-            MT_TRY(evaluate_point(s, q, i, t + (q->rule.point[i] * h), err));
+            MT_TRY(evaluate_point(s, q, i, t + (q->rule.point[i] * h), round == 0, err));
         }
         const double moved = update_point_states(s, q, h);
         /* what is left: as much less again */
