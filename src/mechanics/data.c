@@ -237,6 +237,7 @@ mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def)
         .point = {vec_or_null(d, def->point[0]), vec_or_null(d, def->point[1])},
         .dir = {vec_or_null(d, def->dir[0]), vec_or_null(d, def->dir[1]),
                 vec_or_null(d, def->dir[2])},
+        .held = {def->body[0] == MT_GROUND, def->body[1] == MT_GROUND},
         .plane = d->sys->dimension == 2,
     };
     if (def->kind == MT_MEASURE_BEAM) {

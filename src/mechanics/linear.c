@@ -234,23 +234,60 @@ static mt_status row_errors(mt_linear *lin, int kind, double extent, mt_err *err
     return MT_OK;
 }
 
+/* Rows of the basis and of the bounds of its errors, without the entries that are 0 in both:
+ * the basis is local to the bodies. */
+typedef struct basis_rows {
+    int *start;  /* [nq + 1] */
+    int *column; /* [start[nq]], as the others */
+    double *z;
+    double *error;
+} basis_rows;
+
+/* In scratch. */
+static mt_status take_basis_rows(mt_linear *lin, basis_rows *out, mt_err *err)
+{
+    const ptrdiff_t nq = lin->sys->nq;
+    const size_t entries = (size_t)nq * (size_t)lin->n;
+    int at = 0;
+    out->start = mt_arena_int(&lin->scratch, (size_t)nq + 1);
+    out->column = mt_arena_int(&lin->scratch, entries);
+    out->z = mt_arena_f64(&lin->scratch, entries, 1);
+    out->error = mt_arena_f64(&lin->scratch, entries, 1);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    for (ptrdiff_t j = 0; j < nq; j++) {
+        out->start[j] = at;
+        for (int c = 0; c < lin->n; c++) {
+            const double z = lin->e.z[j + (c * nq)];
+            const double error = lin->z_error[j + (c * nq)];
+            if (z != 0.0 || error != 0.0) {
+                out->column[at] = c;
+                out->z[at] = z;
+                out->error[at++] = error;
+            }
+        }
+    }
+    out->start[nq] = at;
+    return MT_OK;
+}
+
 /* out[n] = Z^T row, error[n] its bound. */
-static void project_row(const mt_linear *lin, int kind, size_t row, double *out, double *error)
+static void project_row(const mt_linear *lin, int kind, size_t row, const basis_rows *basis,
+                        double *out, double *error)
 {
     const mt_rows *const rows = &lin->full[kind];
-    const ptrdiff_t nq = lin->sys->nq;
     for (int k = rows->start[row]; k < rows->start[row + 1]; k++) {
+        const int j = rows->index[k];
         const double value = rows->value[k];
         const double df = lin->full_error[kind][k];
-        for (int c = 0; c < lin->n; c++) {
-            const ptrdiff_t at = rows->index[k] + (c * nq);
-            out[c] += value * lin->e.z[at];
-            error[c] += (fabs(value) * lin->z_error[at]) + (df * fabs(lin->e.z[at]));
+        for (int at = basis->start[j]; at < basis->start[j + 1]; at++) {
+            const int c = basis->column[at];
+            out[c] += value * basis->z[at];
+            error[c] += (fabs(value) * basis->error[at]) + (df * fabs(basis->z[at]));
         }
     }
 }
 
-static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
+static mt_status reduce_rows(mt_linear *lin, int kind, const basis_rows *basis, mt_err *err)
 {
     const mt_term_list *const list = &lin->list[kind];
     const size_t n = (size_t)lin->n;
@@ -266,7 +303,7 @@ static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
         double *const out = lin->reduced[kind] + (i * n);
         double *const bound = error + (kept ? i * n : 0);
         memset(bound, 0, n * sizeof *bound);
-        project_row(lin, kind, i, out, bound);
+        project_row(lin, kind, i, basis, out, bound);
         for (size_t c = 0; c < n; c++) {
             out[c] = fabs(out[c]) <= bound[c] ? 0.0 : out[c];
         }
@@ -287,10 +324,14 @@ static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
 static mt_status reduce_all_rows(mt_linear *lin, mt_err *err)
 {
     const double extent = extent_of(lin);
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    basis_rows basis;
+    MT_TRY(take_basis_rows(lin, &basis, err));
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
         MT_TRY(row_errors(lin, kind, extent, err));
-        MT_TRY(reduce_rows(lin, kind, err));
+        MT_TRY(reduce_rows(lin, kind, &basis, err));
     }
+    mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }
 

@@ -32,10 +32,10 @@ enum {
     SPAN_ALL = SPAN_CHORD | SPAN_TURNS
 };
 
-static void relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,
-                              bool real, mt_relative_jet *out);
-static void relative_cosine(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, bool real,
-                            mt_cx g[3], mt_relative_jet *out);
+static void relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, unsigned moving,
+                              mt_second second, bool real, mt_relative_jet *out);
+static void relative_cosine(mt_cx (*e)[3], mt_cx (*f)[3], unsigned moving, mt_second second,
+                            bool real, mt_cx g[3], mt_relative_jet *out);
 static void relative_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k,
                               const mt_relative_jet *cosine, const mt_cx g[3],
                               mt_relative_jet *out);
@@ -89,6 +89,12 @@ static void relative_add_vec(mt_cx *g, double scale, const mt_cx *v)
     }
 }
 
+/* True where the body with this theta offset turns. */
+static bool has_turn(const mt_relative_jet *j, int at)
+{
+    return (j->span & (at == AT_TURN_A ? SPAN_TURN_A : SPAN_TURN_B)) != 0;
+}
+
 /* Diagonal block at theta offset `at` of scale n . w (w rotates): scale [1/2 (n w^T + w n^T) -
  * (n . w) I]. */
 static void relative_add_rotation(mt_relative_jet *j, int at, double scale, const mt_cx *n,
@@ -97,7 +103,7 @@ static void relative_add_rotation(mt_relative_jet *j, int at, double scale, cons
     const mt_cx dot = scale * cx_dot3(n, w);
     const double half = 0.5 * scale;
     const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
-    for (int r = first; r < 3; r++) {
+    for (int r = has_turn(j, at) ? first : 3; r < 3; r++) {
         mt_cx *const row = j->h + mt_relative_row(at + r) + at;
         for (int c = first; c <= r; c++) {
             if (j->real) {
@@ -117,7 +123,7 @@ static void relative_add_cross(mt_relative_jet *j, int at, const mt_cx *u)
 {
     const mt_cx m[9] = {0.0, u[2], -u[1], -u[2], 0.0, u[0], u[1], -u[0], 0.0};
     const bool plane = j->second == MT_SECOND_PLANE; /* theta about z, dd in x and y */
-    for (int r = plane ? 2 : 0; r < 3; r++) {
+    for (int r = !has_turn(j, at) ? 3 : plane ? 2 : 0; r < 3; r++) {
         mt_cx *const row = j->h + mt_relative_row(at + r) + AT_CHORD;
         for (int c = 0; c < (plane ? 2 : 3); c++) {
             row[c] += m[r + (3 * c)];
@@ -374,7 +380,7 @@ static void beam_parts_fill(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[
     const bool plane = m->beam.plane;
     mt_relative_jet cosine;
     mt_cx g[3];
-    relative_cosine(e, f, second, real, g, &cosine);
+    relative_cosine(e, f, SPAN_ALL, second, real, g, &cosine);
     for (int k = plane ? 2 : 1; k < 3; k++) {
         relative_rotation(e, f, k, &cosine, g, &out->phi[k]);
     }
@@ -384,7 +390,7 @@ static void beam_parts_fill(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[
     for (int k = 0; k < 2; k++) {
         relative_clear(&out->s[k], second, 0, real);
     }
-    relative_distance(NULL, NULL, d, second, real, &out->length);
+    relative_distance(NULL, NULL, d, SPAN_ALL, second, real, &out->length);
     add_end(0, e, d, &out->length, plane, out->s);
     add_end(1, f, d, &out->length, plane, out->s);
 }
@@ -469,12 +475,18 @@ static void beam_strain_fill(const mt_measure_data *m, const mt_beam_parts *p,
 static const double TURN = 6.283185307179586477; /* 2 pi */
 static const mt_cx ZERO3[3] = {0.0, 0.0, 0.0};
 
+/* True where both bodies turn. */
+static bool has_turns(const mt_relative_jet *j)
+{
+    return (j->span & SPAN_TURNS) == SPAN_TURNS;
+}
+
 /* Block (theta_a, theta_b) of alpha I + beta s t^T. */
 static void add_mixed(mt_relative_jet *j, mt_cx alpha, double beta, const mt_cx *s,
                       const mt_cx *t)
 {
     const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
-    for (int c = first; c < 3; c++) {
+    for (int c = first; c < 3 && has_turns(j); c++) {
         mt_cx *const row = j->h + mt_relative_row(AT_TURN_B + c) + AT_TURN_A;
         for (int r = first; r < 3; r++) {
             mt_cx v = beta * cx_mul(s[r], t[c]);
@@ -500,6 +512,7 @@ static void add_real_dot(mt_relative_jet *j, double scale, const mt_cx *cu, cons
         j->g[AT_TURN_B + k] -= scale * n[k];
     }
     const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
+    const bool turns[2] = {has_turn(j, AT_TURN_A), has_turn(j, AT_TURN_B)};
     for (int r = j->second ? first : 3; r < 3; r++) {
         mt_cx *const a = j->h + mt_relative_row(AT_TURN_A + r) + AT_TURN_A;
         mt_cx *const b = j->h + mt_relative_row(AT_TURN_B + r) + AT_TURN_B;
@@ -508,10 +521,14 @@ static void add_real_dot(mt_relative_jet *j, double scale, const mt_cx *cu, cons
             const double half = 0.5 * scale;
             const double one = (half * (u[r] * v[c])) - (r == c ? dot : 0.0);
             const double other = half * (v[r] * u[c]);
-            a[c] = a[c] + one + other;
-            b[c] = b[c] + one + other;
+            if (turns[0]) {
+                a[c] = a[c] + one + other;
+            }
+            if (turns[1]) {
+                b[c] = b[c] + one + other;
+            }
         }
-        for (int c = first; c < 3; c++) {
+        for (int c = first; c < 3 && has_turns(j); c++) {
             mixed[c] += (r == c ? dot : 0.0) - (scale * (v[c] * u[r]));
         }
     }
@@ -587,10 +604,10 @@ static void reach_columns(const mt_cx *s, const mt_cx *t, mt_cx (*jac)[3])
     }
 }
 
-/* |d + t - s|; s and t NULL: |d|. */
+/* |d + t - s|; s and t NULL: |d|. moving: the span that is wanted. */
 /* |r| with r = Q - P, u = r / |r|: gradient u^T J, Hessian (J^T J - g g^T) / |r| + u . d2r. */
-static void relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,
-                              bool real, mt_relative_jet *out)
+static void relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, unsigned moving,
+                              mt_second second, bool real, mt_relative_jet *out)
 {
     const bool chord = s == NULL && t == NULL;
     const mt_cx *const p = s == NULL ? ZERO3 : s;
@@ -598,7 +615,7 @@ static void relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt
     mt_cx r[3];
     mt_cx u[3];
     mt_cx jac[MT_RELATIVE][3];
-    relative_clear(out, second, chord ? SPAN_CHORD : SPAN_ALL, real);
+    relative_clear(out, second, moving & (chord ? SPAN_CHORD : SPAN_ALL), real);
     for (int i = 0; i < 3; i++) {
         r[i] = d[i] + q[i] - p[i];
     }
@@ -658,13 +675,13 @@ static void atan2_jet(const mt_relative_jet *p, const mt_relative_jet *q, mt_rel
 }
 
 /* p = c_a . b_b, q = b_a . b_b. */
-static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, mt_second second,
-                      bool real, mt_relative_jet *out)
+static void angle_jet(const mt_cx *b_a, const mt_cx *c_a, const mt_cx *b_b, unsigned moving,
+                      mt_second second, bool real, mt_relative_jet *out)
 {
     mt_relative_jet p;
     mt_relative_jet q;
-    relative_clear(&p, second, SPAN_TURNS, real);
-    relative_clear(&q, second, SPAN_TURNS, real);
+    relative_clear(&p, second, moving & SPAN_TURNS, real);
+    relative_clear(&q, second, moving & SPAN_TURNS, real);
     add_dot(&p, 1.0, c_a, b_b);
     add_dot(&q, 1.0, b_a, b_b);
     atan2_jet(&p, &q, out);
@@ -727,10 +744,10 @@ static void angle_over_sine(mt_cx c, mt_cx g[3])
 /* Cosine of the angle of the rotation from triad e (on a) to triad f (on b), (trace - 1)/2, and
  * g of it. */
 /* cos from the trace of Q_ij = e_i(a) . e_j(b). */
-static void relative_cosine(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, bool real,
-                            mt_cx g[3], mt_relative_jet *out)
+static void relative_cosine(mt_cx (*e)[3], mt_cx (*f)[3], unsigned moving, mt_second second,
+                            bool real, mt_cx g[3], mt_relative_jet *out)
 {
-    relative_clear(out, second, SPAN_TURNS, real);
+    relative_clear(out, second, moving & SPAN_TURNS, real);
     for (int i = 0; i < 3; i++) {
         add_dot(out, 0.5, e[i], f[i]);
     }
@@ -747,7 +764,7 @@ static void relative_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k,
     mt_relative_jet psi;
     const int k1 = (k + 1) % 3;
     const int k2 = (k + 2) % 3;
-    relative_clear(&psi, cosine->second, SPAN_TURNS, cosine->real);
+    relative_clear(&psi, cosine->second, cosine->span, cosine->real);
     add_dot(&psi, 0.5, e[k2], f[k1]);
     add_dot(&psi, -0.5, e[k1], f[k2]);
     const chain2 c = {
@@ -822,6 +839,12 @@ static bool set_measure_vectors(const mt_measure_data *m, const mt_pose *a, cons
     return real[0] && real[1] && real[2];
 }
 
+/* Freedoms of a Hessian: without those of the ground. */
+static unsigned moving_span(const mt_measure_data *m)
+{
+    return SPAN_CHORD | (m->held[0] ? 0U : SPAN_TURN_A) | (m->held[1] ? 0U : SPAN_TURN_B);
+}
+
 static void rotation_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
                          mt_second second, mt_relative_jet *out)
 {
@@ -834,7 +857,7 @@ static void rotation_jet(const mt_measure_data *m, const mt_pose *a, const mt_po
         real = turn(a, m->dir[i], e[i]) && real;
         real = turn(b, m->dir[i], f[i]) && real;
     }
-    relative_cosine(e, f, second, real, g, &cosine);
+    relative_cosine(e, f, moving_span(m), second, real, g, &cosine);
     relative_rotation(e, f, m->component, &cosine, g, out);
 }
 
@@ -848,28 +871,29 @@ static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose 
     mt_cx e[3];
     mt_cx f[3];
     bool real = true;
+    const unsigned moving = moving_span(m);
     switch (m->kind) {
     case MT_MEASURE_PLANE:
         real = turn(a, m->dir[0], e);
         real = set_measure_vectors(m, a, b, d, s, t) && real;
-        relative_clear(out, second, SPAN_ALL, real);
+        relative_clear(out, second, moving, real);
         add_plane(out, e, s, t, d);
         break;
     case MT_MEASURE_DOT:
         real = turn(a, m->dir[0], e);
         real = turn(b, m->dir[1], f) && real;
-        relative_clear(out, second, SPAN_TURNS, real);
+        relative_clear(out, second, moving & SPAN_TURNS, real);
         add_dot(out, 1.0, e, f);
         break;
     case MT_MEASURE_DISTANCE:
         real = set_measure_vectors(m, a, b, d, s, t);
-        relative_distance(s, t, d, second, real, out);
+        relative_distance(s, t, d, moving, second, real, out);
         break;
     case MT_MEASURE_ANGLE:
         real = turn(a, m->dir[0], e);
         real = turn(a, m->dir[1], s) && real;
         real = turn(b, m->dir[0], f) && real;
-        angle_jet(e, s, f, second, real, out);
+        angle_jet(e, s, f, moving, second, real, out);
         out->value += TURN * rint((m->near - creal(out->value)) / TURN);
         break;
     case MT_MEASURE_ROTATION:

@@ -72,8 +72,9 @@ typedef struct mt_measure_data {
     /* PLANE: u; DOT: u (a), v (b); ANGLE: b, c; ROTATION, BEAM: triad e1 e2 e3; unit vectors */
     const mt_cx *dir[3];
     mt_beam_numbers beam;
-    double near; /* ANGLE: whole turns bring the value nearest to this [rad] */
-    bool plane;  /* two dimensions: the Hessian is wanted in the plane only */
+    double near;  /* ANGLE: whole turns bring the value nearest to this [rad] */
+    bool held[2]; /* a, b is the ground: the Hessian has no entries of its rotation */
+    bool plane;   /* two dimensions: the Hessian is wanted in the plane only */
 } mt_measure_data;
 
 /* Part of a Hessian that is filled; PLANE: the entries of x, y and the rotation about z, a
