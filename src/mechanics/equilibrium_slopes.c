@@ -94,6 +94,30 @@ static void find_rows(work *w)
     }
 }
 
+static void add3(double c, const double *v, double *to)
+{
+    for (int k = 0; k < 3; k++) {
+        to[k] += c * v[k];
+    }
+}
+
+static double dot3(const double *a, const double *b)
+{
+    return (a[0] * b[0]) + (a[1] * b[1]) + (a[2] * b[2]);
+}
+
+/* A vector of a body's drawing as the body stands now; -1: none. */
+static void turned(const mt_linear *lin, int body, int vec, double out[3])
+{
+    const mt_pose *const pose = mt_pose_of(lin->position.at.pose, body);
+    for (int i = 0; i < 3; i++) {
+        out[i] = 0.0;
+        for (int k = 0; k < 3 && vec >= 0; k++) {
+            out[i] += creal(pose->r[i + (3 * k)]) * creal(lin->data.vec[vec][k]);
+        }
+    }
+}
+
 static void cross_add(double c, const double *a, const double *b, double *to)
 {
     double v[3];
@@ -101,22 +125,6 @@ static void cross_add(double c, const double *a, const double *b, double *to)
     for (int k = 0; k < 3; k++) {
         to[k] += c * v[k];
     }
-}
-
-/* Jet of a piece's measure, with derivatives along what d and the poses have. */
-static void piece_jet(const mt_data *d, const mt_piece *p, const mt_placement *at,
-                      mt_beam_parts *parts, mt_relative_jet *out)
-{
-    if (p->def != NULL) {
-        mt_data_relative(d, p->def, at, true, parts, out);
-        return;
-    }
-    const mt_load_def *const load = &d->sys->loads[p->load];
-    mt_cx f[3];
-    for (int k = 0; k < 3; k++) {
-        f[k] = mt_data_scalar(d, load->force[k], 0.0);
-    }
-    mt_measure_relative_point(d->vec[load->point], f, &at->pose[load->body], true, out);
 }
 
 /* h: packed derivatives of the jet's Hessian; returns what of it is filled. */
@@ -132,16 +140,109 @@ static const mt_relative_list *hessian_slope(const mt_relative_jet *jet, double 
     return l;
 }
 
-/* out[MT_LOCAL] = D: the derivative along phi of H phi. */
-static void third_along(const mt_piece *p, const mt_relative_jet *jet, const double *phi,
-                        double *out)
+/*
+ * Of measures that are products of vectors, D in closed form: with n on a, w and t that move
+ * with b (w = x_b - x_a + t and t of a PLANE, both v of a DOT), alpha and beta the rotations
+ * of a and b,
+ *     (H phi)_a = P(n, w) alpha + (n . t) beta - t (n . beta) [+ n x d' and alpha x n on d],
+ *     (H phi)_b = P(n, t) beta + (n . t) alpha - n (t . alpha),
+ *     P(n, w) theta = (n (w . theta) + w (n . theta))/2 - (n . w) theta
+ * (measure.c) are linear in n and in (w, t): their derivative is the sum of those of each.
+ */
+
+/* to += P(n, w) theta. */
+static void add_turned(const double *n, const double *w, const double *theta, double *to)
 {
+    add3(0.5 * dot3(w, theta), n, to);
+    add3(0.5 * dot3(n, theta), w, to);
+    add3(-dot3(n, w), theta, to);
+}
+
+/* on[MT_LOCAL] += what is bilinear in n and (w, t). */
+static void add_bilinear(const double *n, const double *w, const double *t, const double *way,
+                         double *on)
+{
+    const double *const alpha = way + 3;
+    const double *const beta = way + 9;
+    add_turned(n, w, alpha, on + 3);
+    add3(dot3(n, t), beta, on + 3);
+    add3(-dot3(n, beta), t, on + 3);
+    add_turned(n, t, beta, on + 9);
+    add3(dot3(n, t), alpha, on + 9);
+    add3(-dot3(t, alpha), n, on + 9);
+}
+
+/* out[MT_LOCAL] = D of a PLANE or a DOT along way[MT_LOCAL]. */
+static void third_of_product(const mt_linear *lin, const mt_measure_def *def, const double *way,
+                             double *out)
+{
+    const bool plane = def->kind == MT_MEASURE_PLANE;
+    double n[3];
+    double t[3];
+    double w[3];
+    double dn[3];
+    double dt[3];
+    double dw[3];
+    double d[3];
+    turned(lin, def->body[0], def->dir[0], n);
+    turned(lin, def->body[1], plane ? def->point[1] : def->dir[1], t);
+    mt_cross3(way + 3, n, dn);
+    mt_cross3(way + 9, t, dt);
+    for (int k = 0; k < 3; k++) {
+        const mt_pose *const poses = lin->position.at.pose;
+        const double apart = creal(mt_pose_of(poses, def->body[1])->x[k]) -
+                             creal(mt_pose_of(poses, def->body[0])->x[k]);
+        d[k] = plane ? way[6 + k] - way[k] : 0.0;
+        w[k] = t[k] + (plane ? apart : 0.0);
+        dw[k] = dt[k] + d[k];
+    }
+    memset(out, 0, MT_LOCAL * sizeof *out);
+    add_bilinear(dn, w, t, way, out);
+    add_bilinear(n, dw, dt, way, out);
+    if (plane) {
+        cross_add(1.0, dn, d, out + 3);
+        cross_add(-1.0, way + 3, dn, out);
+        cross_add(1.0, way + 3, dn, out + 6);
+    }
+}
+
+/* The same of the load of a point: its arm w turns, the force f does not. */
+static void third_of_point(const mt_linear *lin, const mt_load_def *load, const double *way,
+                           double *out)
+{
+    double f[3];
+    double w[3];
+    double dw[3];
+    turned(lin, load->body, load->point, w);
+    mt_cross3(way + 3, w, dw);
+    for (int k = 0; k < 3; k++) {
+        f[k] = creal(mt_data_scalar(&lin->data, load->force[k], 0.0));
+    }
+    memset(out, 0, MT_LOCAL * sizeof *out);
+    add_turned(f, dw, way + 3, out + 3);
+}
+
+/* out[MT_LOCAL] = D: the derivative along phi of H phi; way: phi of its two bodies. */
+static void third_along(const work *w, const mt_piece *p, const mt_placement *moving,
+                        mt_beam_parts *parts, const double *way, double *out)
+{
+    const mt_linear *const lin = w->lin;
+    if (p->def == NULL) {
+        third_of_point(lin, &lin->sys->loads[p->load], way, out);
+        return;
+    }
+    if (p->def->kind == MT_MEASURE_PLANE || p->def->kind == MT_MEASURE_DOT) {
+        third_of_product(lin, p->def, way, out);
+        return;
+    }
+    mt_relative_jet jet;
     double h[MT_RELATIVE_PAIRS];
-    double way[MT_RELATIVE];
+    double relative[MT_RELATIVE];
     double bent[MT_RELATIVE];
-    const mt_relative_list *const filled = hessian_slope(jet, h);
-    mt_piece_relative(p, phi, way);
-    mt_piece_product(filled, h, way, bent);
+    mt_data_relative(&lin->data, p->def, moving, true, parts, &jet);
+    const mt_relative_list *const filled = hessian_slope(&jet, h);
+    mt_piece_relative(p, w->phi, relative);
+    mt_piece_product(filled, h, relative, bent);
     for (int k = 0; k < MT_LOCAL; k++) {
         out[k] = mt_relative_sign(k) * bent[mt_relative_of(k)];
     }
@@ -200,10 +301,8 @@ static void pull_piece(work *w, int i, const double *mu, const mt_placement *mov
         add_second(p, second, way, bent, on);
     }
     if (p->force != 0.0) {
-        mt_relative_jet jet;
         double third[MT_LOCAL];
-        piece_jet(&lin->data, p, moving, parts, &jet);
-        third_along(p, &jet, w->phi, third);
+        third_along(w, p, moving, parts, way, third);
         add_third(p, p->force, way, bent, third, on);
     }
     mt_piece_add(p, 1.0, on, w->pull);
@@ -469,29 +568,6 @@ static void add_loads(const work *w, double *slope)
  *     e1' = (d' - e1 e1 . d')/L,   omega = e1 x e1' + e1 (e3 . h' - (h . e1) e3 . e1')/|n|,
  *     h' = theta_A x h_A + theta_B x h_B,   L' = e1 . d'.
  */
-static void add3(double c, const double *v, double *to)
-{
-    for (int k = 0; k < 3; k++) {
-        to[k] += c * v[k];
-    }
-}
-
-static double dot3(const double *a, const double *b)
-{
-    return (a[0] * b[0]) + (a[1] * b[1]) + (a[2] * b[2]);
-}
-
-/* A vector of a body's drawing as the body stands now; -1: none. */
-static void turned(const mt_linear *lin, int body, int vec, double out[3])
-{
-    const mt_pose *const pose = mt_pose_of(lin->position.at.pose, body);
-    for (int i = 0; i < 3; i++) {
-        out[i] = 0.0;
-        for (int k = 0; k < 3 && vec >= 0; k++) {
-            out[i] += creal(pose->r[i + (3 * k)]) * creal(lin->data.vec[vec][k]);
-        }
-    }
-}
 
 /* What pulls at a beam element's frame: moment, and force that lengthens. */
 typedef struct frame_pull {
