@@ -344,7 +344,8 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             const mt_measure_data m = mt_data_measure(d, def);
             d->rest[i][side] =
-                s->free != MT_NO_NODE
+                side == 1 && s->measure[0] == s->measure[1] ? d->rest[i][0]
+                : s->free != MT_NO_NODE
                     ? mt_data_scalar(d, s->free, 0.0)
                     : mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
                                        mt_pose_of(reference, def->body[1]), &parts);

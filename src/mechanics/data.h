@@ -56,6 +56,8 @@ typedef struct mt_data {
     mt_cx (*vec)[3];     /* [n_vecs] */
     mt_cx (*rest)[2];    /* [n_springs] rest values of the two measures of each spring */
     mt_cx *target;       /* [n_constraints]; that of the drive at the joint's position */
+    /* what Newton's method keeps from design to design (newton.h); NULL: nothing */
+    struct mt_newton_start *start;
 } mt_data;
 
 mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err);

@@ -86,14 +86,13 @@ static void open_pair(curvature_sum *s, const int body[2])
     memset(s->h, 0, sizeof s->h);
 }
 
-/* h += scale a.h + outer (a.g b.g^T + b.g a.g^T)/2; a needs its h where scale is not 0, b may
- * be NULL where outer is 0. */
+/* h += scale a.h + outer (a.g b.g^T + b.g a.g^T)/2; a needs its h where scale is not 0. */
 static void curvature_add(curvature_sum *s, const int body[2], const mt_relative_jet *a,
                           const mt_relative_jet *b, mt_cx scale, mt_cx outer)
 {
     const bool slope = s->out->slope;
     const bool curved = creal(scale) != 0.0 || cimag(scale) != 0.0;
-    const bool squares = b != NULL && (creal(outer) != 0.0 || cimag(outer) != 0.0);
+    const bool squares = creal(outer) != 0.0 || cimag(outer) != 0.0;
     const mt_relative_list *l = NULL;
     open_pair(s, body);
     if (curved) {
@@ -109,7 +108,7 @@ static void curvature_add(curvature_sum *s, const int body[2], const mt_relative
     if (squares) {
         l = mt_relative_filled(s->second, a->span | b->span);
     }
-    for (int ii = 0; squares && b != NULL && ii < l->n; ii++) {
+    for (int ii = 0; squares && ii < l->n; ii++) {
         const int i = l->at[ii];
         const mt_cx x = cx_mul(0.5 * outer, a->g[i]);
         const mt_cx y = cx_mul(0.5 * outer, b->g[i]);
@@ -433,6 +432,119 @@ mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_are
     return mt_arena_check(mem, err);
 }
 
+/* Jets that are kept take a kilobyte each: few enough that a processor's cache has them. */
+enum { MOST_JETS = 1000 };
+
+static int terms_of(const mt_system *sys)
+{
+    int terms = 0;
+    for (int i = 0; i < sys->n_constraints; i++) {
+        terms += sys->constraints[i].terms;
+    }
+    return terms;
+}
+
+void mt_jets_init(mt_jets *jets, const mt_system *sys, mt_arena *mem)
+{
+    const int n = (2 * sys->n_springs) + terms_of(sys);
+    const size_t measures = (size_t)sys->n_measures;
+    *jets = (mt_jets){.pose = NULL};
+    if (n > MOST_JETS) {
+        return;
+    }
+    jets->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *jets->pose);
+    jets->turn = mt_arena_f64(mem, measures, 1);
+    jets->known = mt_arena_alloc(mem, (size_t)n, sizeof *jets->known);
+    jets->jet = mt_arena_alloc(mem, (size_t)n, sizeof *jets->jet);
+    jets->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *jets->vec);
+    jets->beam = mt_arena_f64(mem, measures, MT_BEAM_NUMBERS);
+}
+
+static double beam_number(const mt_data *d, int measure, int k)
+{
+    const mt_measure_def *const def = &d->sys->measures[measure];
+    return def->kind == MT_MEASURE_BEAM ? creal(mt_data_scalar(d, def->beam[k], 0.0)) : 0.0;
+}
+
+/* True where all that measures are made of is what it was. */
+static bool are_numbers(const mt_data *d, const mt_jets *jets)
+{
+    bool same = true;
+    for (int i = 0; i < d->sys->n_vecs && same; i++) {
+        for (int k = 0; k < 3; k++) {
+            same = same && jets->vec[i][k] == d->vec[i][k];
+        }
+    }
+    for (int i = 0; i < d->sys->n_measures && same; i++) {
+        for (int k = 0; k < MT_BEAM_NUMBERS; k++) {
+            same = same && jets->beam[(i * MT_BEAM_NUMBERS) + k] == beam_number(d, i, k);
+        }
+    }
+    return same;
+}
+
+static void take_numbers(const mt_data *d, mt_jets *jets)
+{
+    memcpy(jets->vec, d->vec, (size_t)d->sys->n_vecs * sizeof *jets->vec);
+    for (int i = 0; i < d->sys->n_measures; i++) {
+        for (int k = 0; k < MT_BEAM_NUMBERS; k++) {
+            jets->beam[(i * MT_BEAM_NUMBERS) + k] = beam_number(d, i, k);
+        }
+    }
+}
+
+static bool keeps_jets(const mt_lagrangian *l)
+{
+    return l->jets != NULL && l->jets->pose != NULL && !l->slope;
+}
+
+/* True where the jets are those of these numbers and this position. */
+static bool are_jets_of(const mt_data *d, const mt_placement *a, const mt_jets *b)
+{
+    const mt_system *const sys = d->sys;
+    bool same = are_numbers(d, b);
+    for (int i = 0; i < sys->n_bodies && same; i++) {
+        same = is_pose(&a->pose[i], &b->pose[i]);
+    }
+    for (int i = 0; i < sys->n_measures && same; i++) {
+        same = a->turn[i] == b->turn[i];
+    }
+    return same;
+}
+
+/* The jets that are kept stand for this position from here on: those of another one are
+ * gone. */
+static void keep_jets_at(const mt_data *d, const mt_placement *at, const mt_lagrangian *l)
+{
+    const mt_system *const sys = d->sys;
+    mt_jets *const jets = l->jets;
+    if (!keeps_jets(l) || are_jets_of(d, at, jets)) {
+        return;
+    }
+    memcpy(jets->pose, at->pose, (size_t)sys->n_bodies * sizeof *at->pose);
+    memcpy(jets->turn, at->turn, (size_t)sys->n_measures * sizeof *at->turn);
+    take_numbers(d, jets);
+    memset(jets->known, 0, (size_t)((2 * sys->n_springs) + terms_of(sys)) * sizeof(bool));
+}
+
+/* The jet of a measure, kept under its number or else in `own`. */
+static mt_relative_jet *jet_at(const mt_data *d, const mt_measure_def *def,
+                               const mt_placement *at, bool second, int number,
+                               mt_beam_parts *parts, const mt_lagrangian *l,
+                               mt_relative_jet *own)
+{
+    const bool keeps = keeps_jets(l);
+    mt_relative_jet *const jet = keeps ? &l->jets->jet[number] : own;
+    if (keeps && l->jets->known[number] && (!second || jet->second != MT_SECOND_NONE)) {
+        return jet;
+    }
+    mt_data_relative(d, def, at, second, parts, jet);
+    if (keeps) {
+        l->jets->known[number] = true;
+    }
+    return jet;
+}
+
 void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, double *out)
 {
     for (int i = 0; i < m; i++) {
@@ -642,12 +754,44 @@ static double along_left(const mt_system *sys, const int body[2], const mt_relat
     return sum;
 }
 
+/* True of a spring without force as its bodies stand where they were drawn: it has no
+ * geometric stiffness. */
+static bool is_unstrained(const mt_data *d, int i, const mt_placement *at,
+                          const mt_lagrangian *out)
+{
+    const mt_system *const sys = d->sys;
+    const mt_spring_def *const s = &sys->springs[i];
+    bool still = out->rest != NULL && out->terms == NULL && !out->slope &&
+                 i != sys->trim_spring && s->free == MT_NO_NODE &&
+                 creal(mt_data_scalar(d, s->preload, 0.0)) == 0.0;
+    for (int side = 0; side < 2 && still; side++) {
+        still = at->turn[s->measure[side]] == 0.0 &&
+                piece_is_still(&sys->measures[s->measure[side]], at->pose, out->rest);
+    }
+    return still;
+}
+
+/* The jets of one or two measures, consecutive. */
+static const mt_relative_jet *spring_jets(const mt_data *d, int i, const mt_placement *at,
+                                          bool second, mt_beam_parts *parts,
+                                          const mt_lagrangian *l, mt_relative_jet own[2])
+{
+    const mt_spring_def *const s = &d->sys->springs[i];
+    const mt_measure_def *const def = d->sys->measures;
+    const mt_relative_jet *const first =
+        jet_at(d, &def[s->measure[0]], at, second, 2 * i, parts, l, &own[0]);
+    if (s->measure[1] != s->measure[0]) {
+        (void)jet_at(d, &def[s->measure[1]], at, second, (2 * i) + 1, parts, l, &own[1]);
+    }
+    return first;
+}
+
 static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature curvature,
                         mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const bool bends = curvature == MT_CURVATURE_FULL || curvature == MT_CURVATURE_GEOMETRIC;
-    mt_relative_jet jet[2];
+    mt_relative_jet own[2];
     mt_beam_parts parts;
     curvature_sum sum;
     parts.dir = NULL;
@@ -661,9 +805,10 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         if (is_left_out(d, i, out)) {
             continue;
         }
+        const bool second = bends && !is_unstrained(d, i, at, out);
+        const mt_relative_jet *const jet = spring_jets(d, i, at, second, &parts, out, own);
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            mt_data_relative(d, def, at, bends, &parts, &jet[side]);
             if (out->left != NULL) {
                 way[side] = along_left(sys, def->body, &jet[side], out->left);
             }
@@ -748,7 +893,7 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
         add_gradient(sys, body, &jet, -size, out, out->g);
         note_force(sys, out, body, &jet, size);
         if (bends) { /* a force at a centre does not */
-            curvature_add(&sum, body, &jet, NULL, -size, 0.0);
+            curvature_add(&sum, body, &jet, &jet, -size, 0.0);
             note_load(d, &sys->loads[i], at->pose, &jet, size, out);
         }
     }
@@ -813,7 +958,7 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             mt_measure_relative(&m, anchor, &poses[i], hessian, NULL, &jet);
             add_gradient(sys, body, &jet, -0.5 * l2, out, out->g);
             if (hessian) {
-                curvature_add(&sum, body, &jet, NULL, -0.5 * l2, 0.0);
+                curvature_add(&sum, body, &jet, &jet, -0.5 * l2, 0.0);
             }
         }
     }
@@ -860,18 +1005,22 @@ static void add_to_row(mt_sparse_row *row, int dof, double a)
     row->a[at] += a;
 }
 
-static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_lagrangian *out)
+/* second: what bends is asked for next. */
+static void add_constraints(const mt_data *d, const mt_placement *at, int m, bool second,
+                            mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    mt_relative_jet jet;
+    mt_relative_jet own;
+    int number = 2 * sys->n_springs;
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
         mt_cx value = -mt_data_target(d, i, at);
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
-            mt_data_relative(d, def, at, false, NULL, &jet);
-            value += cx_mul(factor, jet.value);
+            const mt_relative_jet *const jet =
+                jet_at(d, def, at, second, number++, NULL, out, &own);
+            value += cx_mul(factor, jet->value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
                 if (dof < 0) {
@@ -879,7 +1028,7 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_
                 }
                 const double a =
                     mt_relative_sign(k) *
-                    value_or_derivative(out, cx_mul(factor, jet.g[mt_relative_of(k)]));
+                    value_or_derivative(out, cx_mul(factor, jet->g[mt_relative_of(k)]));
                 if (out->a != NULL) {
                     out->a[i + ((ptrdiff_t)dof * m)] += a;
                 }
@@ -896,8 +1045,9 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
                          mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    mt_relative_jet jet;
+    mt_relative_jet own;
     curvature_sum sum;
+    int number = 2 * sys->n_springs;
     curvature_begin(&sum, sys, out);
     push_joints(d, m, lambda, out);
     for (int i = 0; i < m; i++) {
@@ -906,9 +1056,10 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
             const mt_cx force = cx_mul(factor, lambda[i]);
-            mt_data_relative(d, def, at, true, NULL, &jet);
-            curvature_add(&sum, def->body, &jet, NULL, force, 0.0);
-            mt_piece *const piece = note_joint(d, def, at->pose, &jet, force, out);
+            const mt_relative_jet *const jet =
+                jet_at(d, def, at, true, number++, NULL, out, &own);
+            curvature_add(&sum, def->body, jet, jet, force, 0.0);
+            mt_piece *const piece = note_joint(d, def, at->pose, jet, force, out);
             if (piece != NULL) {
                 piece->force = creal(force);
                 piece->equation = i;
@@ -926,6 +1077,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
                         mt_curvature curvature, mt_lagrangian *out)
 {
     const bool hessian = curvature != MT_CURVATURE_NONE;
+    const bool bends = hessian && curvature != MT_CURVATURE_ELASTIC;
     const size_t nq = (size_t)d->sys->nq;
     memset(out->g, 0, nq * sizeof *out->g);
     memset(out->trim, 0, nq * sizeof *out->trim);
@@ -942,23 +1094,26 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     if (out->push != NULL) {
         memset(out->push, 0, (size_t)d->sys->n_bodies * sizeof *out->push);
     }
+    keep_jets_at(d, at, out);
     out->force_scale = 0.0;
     out->n_pieces = 0;
     out->force_noise = 0.0;
     if (energy == MT_ENERGY_PHYSICAL) {
         add_springs(d, at, curvature, out);
-        add_loads(d, at, hessian && curvature != MT_CURVATURE_ELASTIC, out);
+        add_loads(d, at, bends, out);
     } else if (energy == MT_ENERGY_ANCHOR) {
         add_anchor(d, drawn, at->pose, hessian, out);
     }
-    add_constraints(d, at, m, out);
+    add_constraints(d, at, m, bends && keeps_jets(out), out);
     if (hessian && lambda != NULL) {
         mt_lagrangian_curve(d, at, m, lambda, out);
     }
 }
 
-double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force)
+double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force,
+                       const mt_jets *jets)
 {
+    const bool kept = jets != NULL && jets->pose != NULL && are_jets_of(d, at, jets);
     const mt_system *const sys = d->sys;
     double v = 0.0;
     mt_beam_parts parts;
@@ -971,7 +1126,15 @@ double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_for
         }
         for (int side = 0; side < 2; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            stretch[side] = creal(mt_data_value(d, def, at, &parts)) - creal(d->rest[i][side]);
+            const int number = (2 * i) + side;
+            if (side == 1 && s->measure[0] == s->measure[1]) {
+                stretch[1] = stretch[0];
+            } else {
+                const mt_cx value = kept && jets->known[number]
+                                        ? jets->jet[number].value
+                                        : mt_data_value(d, def, at, &parts);
+                stretch[side] = creal(value) - creal(d->rest[i][side]);
+            }
         }
         if (i == sys->trim_spring) {
             v += trim_force * stretch[0];

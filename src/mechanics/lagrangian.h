@@ -133,6 +133,18 @@ typedef struct mt_sparse_row {
     double a[2 * MT_LOCAL];
 } mt_sparse_row;
 
+/* The jets of all measures of springs and constraints at one position, each computed once,
+ * however often an energy is evaluated there, of any design with the same geometry. */
+typedef struct mt_jets {
+    mt_pose *pose; /* [bodies] where they are known; NULL: none are kept */
+    double *turn;  /* [measures] */
+    bool *known;   /* [2 springs + terms of constraints] */
+    mt_relative_jet *jet;
+    /* the numbers that they are of */
+    mt_cx (*vec)[3]; /* [vecs] */
+    double *beam;    /* [measures x MT_BEAM_NUMBERS], of beams */
+} mt_jets;
+
 typedef struct mt_lagrangian {
     /* in: g, c, a, h and trim are derivatives by the data's input instead of values */
     bool slope;
@@ -156,8 +168,10 @@ typedef struct mt_lagrangian {
     double *terms;
     /* [n_pieces], with terms: all forces */
     mt_piece *pieces;
-    const double *left;  /* in, [nq]: the remaining step, or NULL */
-    const mt_pose *rest; /* in, with terms: [bodies] reference poses of springs and joints */
+    const double *left; /* in, [nq]: the remaining step, or NULL */
+    /* in: [bodies] reference poses of springs and joints; NULL: not known. Needed with terms */
+    const mt_pose *rest;
+    mt_jets *jets; /* in, out: of values; NULL: every jet is computed */
     int n_pieces;
     /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques divided by
      * the model length */
@@ -180,13 +194,17 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
 /* Without h, and with A by rows: O(constraints) of memory. */
 mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                   mt_err *err);
+/* Nothing is kept of systems with many measures. In mem, a shortage of which is the caller's
+ * to report. */
+void mt_jets_init(mt_jets *jets, const mt_system *sys, mt_arena *mem);
 /* out[nq] += A^T lambda, of the first m rows. */
 void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, double *out);
 /* Fill terms, pieces and push as well, from the next evaluation on. */
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err);
-/* Energy alone. */
-double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force);
+/* Energy alone. jets: those that are known there serve; NULL: none. */
+double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force,
+                       const mt_jets *jets);
 
 /* Visit one force: c times the gradient of a measure of these bodies is its contribution to the
  * gradient of the potential, c times the Hessian that to the geometric stiffness; noise:

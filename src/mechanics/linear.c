@@ -527,6 +527,7 @@ void mt_linear_delete(mt_linear *lin)
     if (lin != NULL) {
         mt_arena_free(&lin->scratch);
         mt_arena_free(&lin->reduced_mem);
+        mt_newton_start_free(&lin->start);
         leave_geometry(lin);
         mt_arena_free(&lin->base);
         mt_profile_add(lin->stages.profile, &lin->stages.counts);
@@ -547,6 +548,10 @@ static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
     MT_TRY(mt_arena_check(&lin->base, err));
     MT_TRY(mt_data_init(&lin->data, sys, &lin->base, err));
     MT_TRY(mt_data_init(&lin->dual, sys, &lin->base, err));
+    if (sys->loaded || sys->driven) {
+        MT_TRY(mt_newton_start_init(&lin->start, sys, &lin->base, err));
+        lin->data.start = &lin->start;
+    }
     lin->data.value = lin->value;
     lin->dual.value = lin->value;
     lin->dual.grad = lin->grad;
@@ -658,6 +663,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
         MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry->mem, err));
         l.left = left->q;
         l.rest = lin->position.reference.pose;
+        l.jets = &lin->start.end;
     }
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, &lin->position.at,
                        all, loaded ? lambda : NULL,

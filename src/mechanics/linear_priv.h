@@ -53,6 +53,7 @@ struct mt_linear {
     mt_coupling *coupling; /* of the terms of K (couplings.h) */
     bool *squared;         /* of the terms of K: the coupled spring is a sum of squares */
     mt_data data;          /* real */
+    mt_newton_start start; /* of equilibria, kept from design to design */
     mt_data dual;          /* with derivative */
     mt_state position;
     mt_placement last; /* position of the driven joint at the last update */

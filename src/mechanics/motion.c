@@ -312,7 +312,7 @@ static void add_energy(mt_motion *o, const mt_placement *at)
     o->l.trim_force = trim;
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, at, 0, NULL,
                        MT_CURVATURE_NONE, &o->l);
-    o->potential = mt_energy_value(&lin->data, at, 0.0) + stored;
+    o->potential = mt_energy_value(&lin->data, at, 0.0, NULL) + stored;
 }
 
 void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v)

@@ -88,6 +88,21 @@ static void want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem)
     l->h = mt_arena_f64(mem, sys->layout->envelope.count, 1);
 }
 
+mt_status mt_newton_start_init(mt_newton_start *start, const mt_system *sys, mt_arena *mem,
+                               mt_err *err)
+{
+    *start = (mt_newton_start){.rows = -1};
+    mt_jets_init(&start->jets, sys, mem);
+    mt_jets_init(&start->end, sys, mem);
+    MT_TRY(mt_arena_check(mem, err));
+    return mt_arena_init(&start->mem, 0, err);
+}
+
+void mt_newton_start_free(mt_newton_start *start)
+{
+    mt_arena_free(&start->mem);
+}
+
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err)
 {
@@ -469,13 +484,62 @@ static mt_status solve_sparse(mt_newton_work *w, mt_newton_solver *solver, doubl
                  : MT_OK;
 }
 
+/* Jets that are kept where an equilibrium is looked for, or found; NULL: none. */
+static mt_jets *kept_jets(const mt_newton_work *w, bool first)
+{
+    mt_newton_start *const start = w->p->data->start;
+    const bool keeps = start != NULL && w->p->energy == MT_ENERGY_PHYSICAL && !w->p->sparse;
+    return !keeps ? NULL : first ? &start->jets : &start->end;
+}
+
+static bool same_row(const mt_sparse_row *a, const mt_sparse_row *b)
+{
+    bool same = a->n == b->n;
+    for (int k = 0; k < a->n && same; k++) {
+        same = a->dof[k] == b->dof[k] && a->a[k] == b->a[k];
+    }
+    return same;
+}
+
+/* mt_newton_least_squares where a stage begins, in the memory of start: the factor is that of
+ * an earlier design where the rows are the same. */
+static mt_status least_squares_at_start(mt_newton_work *w, bool apart, mt_newton_start *start,
+                                        mt_err *err)
+{
+    const int m = rows(w);
+    bool same = start->rows == m && start->apart == apart;
+    for (int i = 0; i < m && same; i++) {
+        same = same_row(&start->row[i], &w->sparse.row[i]);
+    }
+    if (same) {
+        w->factors++;
+        return MT_OK;
+    }
+    start->rows = -1;
+    mt_arena_clear(&start->mem);
+    start->row = mt_arena_alloc(&start->mem, (size_t)m, sizeof *start->row);
+    MT_TRY(mt_arena_check(&start->mem, err));
+    memcpy(start->row, w->sparse.row, (size_t)m * sizeof *start->row);
+    MT_TRY(mt_newton_least_squares(w, apart, &start->mem, &start->least, &start->sure, err));
+    start->rows = m;
+    start->apart = apart;
+    return MT_OK;
+}
+
 /* w->lambda by least squares, and what they leave unbalanced. */
 static mt_status find_multipliers(mt_newton_work *w, bool first, mt_arena *mem, bool *sure,
                                   mt_err *err)
 {
     const int m = w->p->m;
+    mt_newton_start *const start = first && !w->p->sparse ? w->p->data->start : NULL;
     mt_saddle least;
-    MT_TRY(mt_newton_least_squares(w, first && !w->p->sparse, mem, &least, sure, err));
+    if (start != NULL) {
+        MT_TRY(least_squares_at_start(w, true, start, err));
+        least = start->least;
+        *sure = start->sure;
+    } else {
+        MT_TRY(mt_newton_least_squares(w, first && !w->p->sparse, mem, &least, sure, err));
+    }
     if (!*sure) {
         return MT_OK;
     }
@@ -499,6 +563,7 @@ static mt_status newton_linearise_sparse(mt_newton_work *w, const mt_placement *
     const int nq = w->sys->nq;
     *solver = (mt_newton_solver){.sparse = true};
     MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
+    w->sparse.jets = kept_jets(w, first);
     w->sparse.trim_force = w->tau;
     mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL,
                        w->elastic ? MT_CURVATURE_ELASTIC : MT_CURVATURE_FULL, &w->sparse);
@@ -728,7 +793,7 @@ static mt_status search_line(mt_newton_work *w, mt_placement *at, double *energy
         mt_newton_take_step(w, at, length);
         const mt_status rc = restore_constraints(w, at, mem, NULL);
         if (rc == MT_OK) {
-            const double now = mt_energy_value(w->p->data, at, w->tau);
+            const double now = mt_energy_value(w->p->data, at, w->tau, NULL);
             *lower = now < *energy;
             *energy = *lower ? now : *energy;
         } else if (rc != MT_E_ASSEMBLY && rc != MT_E_DOMAIN) {
@@ -752,7 +817,7 @@ static mt_status newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *
     const int nq = w->sys->nq;
     double *const out = mt_arena_f64(mem, (size_t)nq, 1);
     MT_TRY(mt_newton_dense(w, mem, err));
-    double energy = mt_energy_value(w->p->data, at, w->tau);
+    double energy = mt_energy_value(w->p->data, at, w->tau, NULL);
     *lower = false;
     MT_TRY(mt_arena_check(mem, err));
     const double size = mt_newton_scaled_norm(w, w->step);
@@ -773,7 +838,7 @@ static mt_status newton_descend(mt_newton_work *w, mt_placement *at, mt_arena *m
 {
     MT_TRY(mt_newton_dense(w, mem, err));
     MT_TRY(restore_constraints(w, at, mem, err));
-    double energy = mt_energy_value(w->p->data, at, w->tau);
+    double energy = mt_energy_value(w->p->data, at, w->tau, NULL);
     bool lower = true;
     for (int it = 0; it < DESCENT_LIMIT && lower; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -956,6 +1021,96 @@ static void move_by_newton_step(mt_newton_work *w, mt_placement *at,
     newton_follow(w, at);
 }
 
+/*
+ * Beside the solution, steps with the factor of an earlier position: each leaves about as large
+ * a part of the error as the matrices have changed by since, and takes neither Hessian nor
+ * factor. They end where the next one would be rounding, or where they do not shrink as
+ * they should, and the equations are linearised there: what is kept is never of an earlier
+ * position.
+ */
+
+/* Steps up to here change the matrices so little that two or three more are rounding; after
+ * one that is shorter than the other Newton's next is rounding [model lengths]. */
+static const double BESIDE = 1e-4;
+static const double NEXT_TO = 1e-8;
+/* Each leaves at most this part of the last one. */
+static const double SHRINKS = 1e-2;
+/* A step that is shorter is rounding: half of what rests() calls so. */
+static const double ROUNDING = 4.0 * DBL_EPSILON;
+enum { CHORDS_MOST = 4 };
+
+/* w->step, w->turn and *more, as newton_linearise_sparse, with an earlier factor and what the
+ * forces are now. */
+static mt_status step_with_earlier_factor(mt_newton_work *w, const mt_placement *at,
+                                          mt_newton_solver *solver, double *more, mt_arena *mem,
+                                          mt_err *err)
+{
+    const mt_newton_problem *const p = w->p;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
+    w->sparse.jets = NULL;
+    w->sparse.trim_force = w->tau;
+    mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_NONE,
+                       &w->sparse);
+    (void)unbalanced(w, &solver->saddle);
+    for (int j = 0; j < w->sys->nq; j++) {
+        w->reduced[j] = -w->reduced[j];
+    }
+    for (int i = 0; i < p->m; i++) {
+        w->turn[i] = -w->c[i];
+    }
+    MT_TRY(p->trim ? mt_border_solve(&solver->border, w->reduced, w->turn, w->step, w->turn,
+                                     more, mem, err)
+                   : mt_saddle_solve(&solver->saddle, w->reduced, w->turn, w->step, w->turn,
+                                     mem, err));
+    w->moved = mt_newton_scaled_norm(w, w->step);
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+/* After a step that has been taken: more of them, with its factor. NULL: not with it, as it
+ * knows nothing of the forces. */
+static mt_status go_on_with_factor(mt_newton_work *w, mt_placement *at,
+                                   mt_newton_solver *solver, mt_arena *mem, mt_stage *stage,
+                                   mt_err *err)
+{
+    const bool beside = w->moved <= BESIDE && w->moved > NEXT_TO;
+    double before = w->moved;
+    for (int i = 0; i < CHORDS_MOST && solver != NULL && w->followed && beside; i++) {
+        double more = 0.0;
+        mt_axpy(w->p->m, 1.0, w->turn, w->lambda); /* of the step before */
+        MT_TRY(step_with_earlier_factor(w, at, solver, &more, mem, err));
+        stage->iterations++;
+        if (!(w->moved <= SHRINKS * before)) { /* not taken: linearised here */
+            w->moved = before;
+            memset(w->turn, 0, (size_t)w->p->m * sizeof *w->turn);
+            return MT_OK;
+        }
+        w->tau += more;
+        mt_newton_take_step(w, at, MT_STEP_LIMIT);
+        newton_follow(w, at);
+        if (w->moved * (w->moved / before) <= ROUNDING) {
+            return MT_OK;
+        }
+        before = w->moved;
+    }
+    return MT_OK;
+}
+
+/* Take the step that was found with the elastic stiffness alone, or leave it; returns how long
+ * it was. tau: of the trimmed spring, before. */
+static double move_elastically(mt_newton_work *w, mt_placement *at,
+                               const mt_newton_solver *solver, double tau, double previous)
+{
+    if (!use_elastic(w, previous)) {
+        w->tau = tau;
+        return HUGE_VAL;
+    }
+    const double moved = w->moved;
+    move_by_newton_step(w, at, solver);
+    return moved;
+}
+
 /* Plain Newton from the present position; *done: converged. */
 static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *mem,
                                 mt_stage *stage, bool *done, mt_err *err)
@@ -981,13 +1136,7 @@ static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *m
             stay_at_rest(w, &solver);
         }
         if (w->elastic) {
-            if (!use_elastic(w, previous)) {
-                w->tau = tau;
-                previous = HUGE_VAL;
-                continue;
-            }
-            previous = w->moved;
-            move_by_newton_step(w, at, &solver);
+            previous = move_elastically(w, at, &solver, tau, previous);
             continue;
         }
         const bool rest = rests(w, previous);
@@ -1004,9 +1153,10 @@ static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *m
         if (rest && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
             return MT_OK; /* something pushes along a freedom without stiffness */
         }                 /* else the force of the trimmed spring is still settling */
-        previous = w->moved;
         unbalanced = w->residual;
         move_by_newton_step(w, at, &solver);
+        MT_TRY(go_on_with_factor(w, at, followed ? &solver : NULL, mem, stage, err));
+        previous = w->moved;
         if (dense == (w->h != NULL)) { /* else there is room for dense matrices from here on */
             mt_arena_rewind(mem, mark);
         }
@@ -1104,7 +1254,7 @@ static mt_status check_for_saddle(mt_newton_work *w, const mt_placement *start,
     if (!end->done) {
         return MT_OK;
     }
-    end->energy = mt_energy_value(w->p->data, at, w->tau);
+    end->energy = mt_energy_value(w->p->data, at, w->tau, kept_jets(w, false));
     if (solver.sparse && mt_saddle_convex(&solver.saddle)) {
         return MT_OK;
     }
@@ -1214,9 +1364,10 @@ mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt
     ending end = {.done = false};
     mt_placement start;
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
+    w.sparse.rest = problem->rest;
     MT_TRY(copy_placement(&w, at, &start, mem, err));
     const bool closed = newton_gap_at(&w, at) <= MT_STEP_DONE;
-    end.before = mt_energy_value(problem->data, at, 0.0);
+    end.before = mt_energy_value(problem->data, at, 0.0, kept_jets(&w, true));
     w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
     MT_TRY(attempt(&w, at, mem, stage, &end.done, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {

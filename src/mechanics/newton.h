@@ -11,6 +11,8 @@ typedef struct mt_newton_problem {
     const mt_data *data;
     mt_energy energy;
     const mt_pose *drawn; /* anchor */
+    /* of the springs' rest values, where those are of a position; NULL: not known */
+    const mt_pose *rest;
     int m;
     /* the drive's constraint, the last, is held by the unknown force of the trimmed spring
      * instead of its multiplier */
@@ -19,6 +21,30 @@ typedef struct mt_newton_problem {
      * stiffness are not detected */
     bool sparse;
 } mt_newton_problem;
+
+/*
+ * Where an equilibrium is looked for is the same position of many designs: the drawing, or
+ * where the driven joint has brought it. What does not depend on what differs between them is
+ * kept: jets of measures, and the least-squares factor of the constraints. It is used where
+ * all numbers that it was made of have the same values, so that results are the same with and
+ * without.
+ */
+typedef struct mt_newton_start {
+    mt_jets jets;
+    mt_jets end; /* where the search ended, for who goes on from there */
+    int rows;    /* that are factored; -1: none */
+    bool apart;
+    bool sure;
+    mt_sparse_row *row; /* [rows] */
+    mt_saddle least;
+    mt_arena mem; /* of row and least */
+} mt_newton_start;
+
+/* jets in mem; mt_newton_start_free leaves them to it, and accepts what is zero. Fails:
+ * MT_E_MEMORY. */
+mt_status mt_newton_start_init(mt_newton_start *start, const mt_system *sys, mt_arena *mem,
+                               mt_err *err);
+void mt_newton_start_free(mt_newton_start *start);
 
 /*
  * Solver of the equations of a step. Sparse, as a saddle-point system, where that is safely

@@ -891,6 +891,7 @@ static mt_status find_equilibrium(mt_state *p, const mt_data *data, mt_arena *me
     const mt_newton_problem problem = {.data = data,
                                        .energy = MT_ENERGY_PHYSICAL,
                                        .drawn = p->drawn,
+                                       .rest = p->reference.pose,
                                        .m = p->sys->n_constraints,
                                        .trim = p->sys->trim,
                                        .sparse = p->sparse};
