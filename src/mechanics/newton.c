@@ -1052,7 +1052,7 @@ static mt_status step_with_earlier_factor(mt_newton_work *w, const mt_placement 
     w->sparse.trim_force = w->tau;
     mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_NONE,
                        &w->sparse);
-    (void)unbalanced(w, &solver->saddle);
+    (void)unbalanced(w);
     for (int j = 0; j < w->sys->nq; j++) {
         w->reduced[j] = -w->reduced[j];
     }
