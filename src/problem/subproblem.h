@@ -57,6 +57,10 @@ typedef struct mt_subproblem {
     double proof_work;
     /* local solves of a search where the study sets no number; 0: by the number of variables */
     int starts;
+    /* sampled corners of the tolerances that a search of the same question with other bounds
+     * needed, and where to put those that this one needs; NULL: none, nowhere */
+    const struct mt_tolerance_cuts *cuts_known;
+    struct mt_tolerance_cuts *cuts_found;
     bool best_alone; /* only the best design is wanted */
     bool as_found;   /* any of equally good designs will do: the nearest is not searched */
     int n_t;         /* n, or n + 1 */

@@ -510,7 +510,8 @@ static mt_status lay_out(const mt_row_layout *l, mt_err *err)
                       ? l->known->limits
                       : mt_arena_alloc(l->mem, (size_t)c->p->n_requirements, sizeof *r->limits),
         .lower = mt_arena_f64(l->mem, n, 1),
-        .upper = mt_arena_f64(l->mem, n, 1)};
+        .upper = mt_arena_f64(l->mem, n, 1),
+        .sampled_later = l->known != NULL && l->known->sampled_later};
     MT_TRY(mt_arena_check(l->mem, err));
     c->tolerance_box = r;
     widen_tolerance_bounds(c);
@@ -543,6 +544,9 @@ bool mt_tolerance_row_is_sampled(const mt_subproblem *c, const mt_row *row)
 
 bool mt_tolerance_is_sampled(const mt_subproblem *c)
 {
+    if (c->tolerance_box != NULL && c->tolerance_box->sampled_later) {
+        return true;
+    }
     for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
         if (mt_tolerance_row_is_sampled(c, &c->rows.in.rows[k])) {
             return true;

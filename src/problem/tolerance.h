@@ -23,11 +23,12 @@
  * Without variables of the second kind the worst corners are known at every design: two, exact.
  * Otherwise they are samples. Where the search can continue from a design that violates one
  * (some variable has no catalogue), it begins with those that slopes at the original design
- * give for each mode and side (tolerance.c): 2^k analyses become one or two. The design
- * at which a search ends is then evaluated over its own tolerances (mt_tolerance_ranges): more
- * signs are proven there, and for the others the worst point is searched. A point worse than
- * the corners is added to them, and the search continues (tolerance_cut.h). Reported ranges are
- * computed again in the same way.
+ * give for each mode and side (tolerance.c): 2^k analyses become one or two; or, without a
+ * budget, with none of them (search/search_tolerances.c). The design at which a search ends is
+ * then evaluated over its own tolerances (mt_tolerance_ranges): more signs are proven there,
+ * and for the others the worst point is searched. A point worse than the corners is added to
+ * them, and the search continues (tolerance_cut.h). Reported ranges are computed again in the
+ * same way.
  *
  * The misfit and the objectives, except the clearance, are those of the nominal design. A
  * target (or "equals") is met by the nominal design; with its own "tolerance_percent" it is a
@@ -69,6 +70,8 @@ typedef struct mt_problem_tolerance_box {
     mt_tolerance_corners *limits; /* [n_requirements] */
     double *lower;                /* [n] bounds, widened by the tolerances */
     double *upper;
+    /* sampled corners are left out of the views: designs are verified after the search */
+    bool sampled_later;
 } mt_problem_tolerance_box;
 
 /* Ranges of all values. */
@@ -111,7 +114,7 @@ int mt_tolerance_next_row(const mt_subproblem *c, int from);
 /* True where a row at a corner is one of samples. Configurations of cuts along a drive are
  * evaluated at their corners only. */
 bool mt_tolerance_row_is_sampled(const mt_subproblem *c, const mt_row *row);
-/* True where a limit of the subproblem is evaluated at sampled corners. */
+/* True where a limit of the subproblem is evaluated at sampled corners, or will be. */
 bool mt_tolerance_is_sampled(const mt_subproblem *c);
 /* mt_avoidance_find_modes after the configuration has been solved, over the tolerances where
  * there are any: the value that the objective "clearance" maximises. */

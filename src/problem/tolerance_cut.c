@@ -17,6 +17,10 @@ static const double SAME_FACTOR = 1e-12;
  * largest tolerance (where slopes vanish the way is short): worse points, three times as far,
  * are not looked for before the design is described. */
 static const double FAR = 2.0;
+/* Once is enough where the slopes at the corner agree with those at the design: the sums
+ * of their effects differ by no more than this share, and effects that turn make up no
+ * more. What is almost linear is nowhere twice as far as at its corner. */
+static const double AGREE = 0.25;
 
 /* Margin of the row for the value `value`: relative, for frequencies logarithmic; negative:
  * violated. Without the clearance. */
@@ -47,6 +51,17 @@ static bool same_factor(int n, const double *a, const double *b)
     return true;
 }
 
+/* True where a search with these cuts has the corners of a set as well. */
+static bool has_corners(const mt_subproblem *c, const mt_tolerance_cuts *cuts, int view,
+                        const mt_tolerance_corners *set)
+{
+    bool has = !cuts->alone || set->exact || view < 0;
+    for (int i = 0; i < c->p->n_requirements && !has; i++) {
+        has = c->p->requirements[i].view == view && c->p->requirements[i].role == MT_ROLE_RANGE;
+    }
+    return has;
+}
+
 /* Adds the corner where the value of a row is worst, unless it is one already. */
 static mt_status add_cut(const mt_workspace *w, const mt_row *row, const double *at,
                          mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
@@ -60,7 +75,8 @@ static mt_status add_cut(const mt_workspace *w, const mt_row *row, const double 
     for (int i = 0; i < n; i++) {
         factor[i] = w->x[i] != 0.0 ? at[i] / w->x[i] : 1.0;
     }
-    for (int k = 0; k < set->n; k++) {
+    const int n_known = has_corners(c, cuts, view, set) ? set->n : 0;
+    for (int k = 0; k < n_known; k++) {
         const mt_tolerance_corner *const known = &set->corners[k];
         if (known->may[row->sense] && same_factor(n, known->factor, factor)) {
             return MT_OK;
@@ -157,22 +173,54 @@ mt_status mt_tolerance_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
     return lower(w, v, NULL, mem, cuts, err);
 }
 
-/* x[n] := the corner that is worst to first order for the mode of a row at the design that w
- * was evaluated at with slopes; false: it has none. */
-static bool name_worst(mt_workspace *w, const mt_row *row, int mode, double *x)
+/* slope[n] := slopes of a mode, raw; false: it has none. */
+static bool find_slopes(mt_analysis *a, int mode, double *slope)
 {
-    mt_analysis *const a = w->views[row->view].analysis;
     const int pos = mt_modal_flexible(&a->modes, mode);
     mt_err own = {.code = MT_OK};
-    if (pos < 0 || mt_analysis_dlambda_raw(a, pos, w->tolerance_box->slope, &own) != MT_OK) {
+    return pos >= 0 && mt_analysis_dlambda_raw(a, pos, slope, &own) == MT_OK;
+}
+
+/* Half the width of the tolerance of variable i at the design of w. */
+static double half_width(const mt_workspace *w, int i)
+{
+    return mt_tolerance_of_variable(w->p, i) * fabs(w->x[i]);
+}
+
+/* x[n] := the corner that is worst to first order for the mode of a row at the design that w
+ * was evaluated at with slopes, which are in tolerance_box->slope then; false: it has none. */
+static bool name_worst(mt_workspace *w, const mt_row *row, int mode, double *x)
+{
+    const double *const slope = w->tolerance_box->slope;
+    if (!find_slopes(w->views[row->view].analysis, mode, w->tolerance_box->slope)) {
         return false;
     }
     for (int i = 0; i < w->p->n; i++) {
-        const double half = mt_tolerance_of_variable(w->p, i) * fabs(w->x[i]);
-        const bool low = (w->tolerance_box->slope[i] > 0.0) == (row->sense == MT_AT_LEAST);
-        x[i] = w->x[i] + (low ? -half : half);
+        const bool low = (slope[i] > 0.0) == (row->sense == MT_AT_LEAST);
+        x[i] = w->x[i] + (low ? -half_width(w, i) : half_width(w, i));
     }
     return true;
+}
+
+/* True where the slopes at the corner, of the analysis a, are those at the design but for a
+ * small share: over the tolerances the mode changes almost linearly. slope[n]: work. */
+static bool slopes_agree(const mt_workspace *w, mt_analysis *a, int mode, double *slope)
+{
+    double here = 0.0;
+    double there = 0.0;
+    double other = 0.0; /* of the other sign */
+    if (!find_slopes(a, mode, slope)) {
+        return false;
+    }
+    for (int i = 0; i < w->p->n; i++) {
+        const double half = half_width(w, i);
+        const double effect = half * fabs(slope[i]);
+        const bool turns = slope[i] * w->tolerance_box->slope[i] < 0.0;
+        here += half * fabs(w->tolerance_box->slope[i]);
+        there += effect;
+        other += turns ? effect : 0.0;
+    }
+    return fabs(there - here) <= AGREE * here && other <= AGREE * here;
 }
 
 static double largest_tolerance(const mt_problem *p)
@@ -192,7 +240,7 @@ static mt_status verify_first(mt_workspace *w, const mt_row *row, double *x, mt_
     const mt_subproblem *const c = w->c;
     const int mode = row->mode;
     const mt_configuration_work *const view = &w->views[row->view];
-    const mt_analysis_options opt = mt_configuration_queries(w, view, false);
+    const mt_analysis_options opt = mt_configuration_queries(w, view, true);
     mt_analysis *const a = view->corners[0];
     mt_err own = {.code = MT_OK};
     *far = false;
@@ -214,6 +262,11 @@ static mt_status verify_first(mt_workspace *w, const mt_row *row, double *x, mt_
     const double way = fmax(fabs(here - room), largest_tolerance(w->p));
     /* of bands the least room is asked for, wherever it is */
     *far = (row->requirement >= 0 || c->clearance) && room - wanted > FAR * way;
+    if (!*far && row->requirement >= 0 && room - wanted > fabs(here - room)) {
+        double *const slope = mt_arena_f64(mem, (size_t)w->p->n, 1);
+        MT_TRY(mt_arena_check(mem, err));
+        *far = slopes_agree(w, a, mode, slope);
+    }
     if (room - wanted < -row->tolerance) {
         mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
         MT_TRY(add_cut(w, row, x, mem, cuts, err));
@@ -283,10 +336,11 @@ static mt_status extend(const mt_subproblem *c, const mt_tolerance_cuts *cuts, i
     const size_t n = (size_t)c->p->n;
     const mt_tolerance_corners *const set = mt_tolerance_corners_of(c, view, requirement);
     *out = *set;
-    out->corners = mt_arena_alloc(mem, (size_t)set->n + (size_t)cuts->n, sizeof *out->corners);
+    out->n = has_corners(c, cuts, view, set) ? set->n : 0;
+    out->corners = mt_arena_alloc(mem, (size_t)out->n + (size_t)cuts->n, sizeof *out->corners);
     MT_TRY(mt_arena_check(mem, err));
-    if (set->n > 0) {
-        memcpy(out->corners, set->corners, (size_t)set->n * sizeof *out->corners);
+    if (out->n > 0) {
+        memcpy(out->corners, set->corners, (size_t)out->n * sizeof *out->corners);
     }
     for (int k = 0; k < cuts->n; k++) {
         const mt_tolerance_cut *const cut = &cuts->items[k];
@@ -311,7 +365,8 @@ mt_status mt_tolerance_add_cuts(const mt_subproblem *c, const mt_tolerance_cuts 
     MT_TRY(mt_arena_check(mem, err));
     *r = (mt_problem_tolerance_box){.views = mt_arena_alloc(mem, n_views, sizeof *r->views),
                                     .limits =
-                                        mt_arena_alloc(mem, n_requirements, sizeof *r->limits)};
+                                        mt_arena_alloc(mem, n_requirements, sizeof *r->limits),
+                                    .sampled_later = cuts->alone};
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < c->p->n_views; i++) {
         MT_TRY(extend(c, cuts, i, -1, mem, &r->views[i], err));

@@ -23,6 +23,8 @@ typedef struct mt_tolerance_cuts {
     int n;
     int room;
     mt_tolerance_cut *items;
+    /* the search has no other sampled corners than these, except those of targets' ranges */
+    bool alone;
     /* of the last design verified */
     int added;
     /* violations at the worst points within its tolerances, of sampled limits only */
@@ -49,8 +51,8 @@ mt_status mt_tolerance_verify_by_slopes(mt_workspace *w, const double *t, mt_are
  * those of the worst points. No effect where nothing is sampled. */
 mt_status mt_tolerance_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
                              mt_tolerance_cuts *cuts, mt_err *err);
-/* *out: corners of a subproblem and the cuts, in mem, as the tolerance_box of a copy of it
- * before mt_subproblem_lay_out. Fails: MT_E_MEMORY. */
+/* *out: corners of a subproblem and the cuts, or the cuts alone, in mem, as the tolerance_box
+ * of a copy of it before mt_subproblem_lay_out. Fails: MT_E_MEMORY. */
 mt_status mt_tolerance_add_cuts(const mt_subproblem *c, const mt_tolerance_cuts *cuts,
                                 mt_arena *mem, mt_problem_tolerance_box **out, mt_err *err);
 

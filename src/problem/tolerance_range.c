@@ -315,16 +315,14 @@ static void note_explored(sampler *s, const double *at)
     }
 }
 
-/* True where no value searched, of values that ascend, meets its neighbour at any sample: there
- * are no ridges, and what slopes call the worst corner is that, but for a second valley. */
-static bool are_apart(const sampler *s)
+/* True where value k, of values that ascend, meets its neighbours at no sample: it has no
+ * ridge, and what slopes call its worst corner is that, but for a second valley. */
+static bool is_apart(const sampler *s, int k)
 {
     const mt_tolerance_range *const r = s->out;
-    bool apart = true;
-    for (int k = 0; k + 1 < s->q->m && k < s->q->n_descend; k++) {
-        apart = apart && r[k].value[MT_HIGHEST] < r[k + 1].value[MT_LOWEST];
-    }
-    return apart;
+    const bool below = k == 0 || r[k - 1].value[MT_HIGHEST] < r[k].value[MT_LOWEST];
+    const bool above = k + 1 == s->q->m || r[k].value[MT_HIGHEST] < r[k + 1].value[MT_LOWEST];
+    return below && above;
 }
 
 /* All kinds of moves, until none gains. */
@@ -336,7 +334,7 @@ static mt_status descend(sampler *s, int k, mt_tolerance_side side, mt_err *err)
     for (int turn = 0; turn < s->rounds && gain > GAIN * fabs(*best); turn++) {
         const double before = *best;
         MT_TRY(repeat(s, step_to_extreme, k, side, err));
-        const bool settled = s->is_coarse && are_apart(s);
+        const bool settled = s->is_coarse && is_apart(s, k);
         if (s->at_corner && (settled || is_explored(s, at))) {
             return MT_OK;
         }

@@ -46,6 +46,8 @@ typedef struct judging {
     mt_combination *list;
     long budget;
     bool settles; /* of equal designs of a combination it ends with the nearest */
+    bool finds;   /* its cuts are kept for the combinations that follow */
+    int first;    /* of the list, for the first task */
 } judging;
 
 mt_status mt_catalogue_search_alloc(const mt_catalogue_search *d, int n, mt_combination **out,
@@ -297,6 +299,7 @@ static mt_status close_on(const mt_catalogue_search *d, const mt_combination *c,
     out->hint = c->from;
     out->best_alone = true;
     out->as_found = true;
+    out->cuts_known = d->cuts;
     return MT_OK;
 }
 
@@ -387,13 +390,33 @@ static mt_status catalogue_search_directions(mt_catalogue_search *d, const mt_co
     return rc;
 }
 
+/* A copy of cuts in the search's memory, for the combinations that follow. */
+static mt_status keep_cuts(mt_catalogue_search *d, const mt_tolerance_cuts *from, mt_err *err)
+{
+    const size_t n = (size_t)d->p->n;
+    mt_tolerance_cuts *const cuts = mt_arena_alloc(d->mem, 1, sizeof *cuts);
+    mt_tolerance_cut *const items = mt_arena_alloc(d->mem, (size_t)from->n, sizeof *items);
+    double *const factors = mt_arena_f64(d->mem, n, (size_t)from->n);
+    MT_TRY(mt_arena_check(d->mem, err));
+    for (int i = 0; i < from->n; i++) {
+        double *const factor = factors + ((size_t)i * n);
+        memcpy(factor, from->items[i].factor, n * sizeof *factor);
+        items[i] = from->items[i];
+        items[i].factor = factor;
+    }
+    *cuts = (mt_tolerance_cuts){.n = from->n, .items = items};
+    d->cuts = cuts;
+    return MT_OK;
+}
+
 static mt_status verify_mixed(void *context, int worker, int task, mt_task_path *own,
                               mt_err *err)
 {
     const judging *const j = context;
     mt_workspace *const w = j->d->workers[worker];
-    mt_combination *const c = &j->list[task];
+    mt_combination *const c = &j->list[j->first + task];
     mt_task_path *const before = w->task_path;
+    mt_tolerance_cuts found = {.n = 0};
     mt_arena mem;
     mt_subproblem closed;
     MT_TRY(mt_arena_init(&mem, 0, err));
@@ -402,7 +425,9 @@ static mt_status verify_mixed(void *context, int worker, int task, mt_task_path 
     if (j->settles) {
         search_again(&closed, c->from);
     }
+    closed.cuts_found = j->finds ? &found : NULL;
     rc = rc == MT_OK ? search_closed(w, &mem, c, err) : rc;
+    rc = rc == MT_OK && found.n > 0 ? keep_cuts(j->d, &found, err) : rc;
     w->task_path = before;
     mt_workspace_back(w, j->d->c);
     mt_arena_free(&mem);
@@ -454,11 +479,32 @@ static void note_step(mt_catalogue_search *d, const mt_combination *c)
     }
 }
 
+/* The first combination is searched for the corners of its tolerances that matter, by every
+ * part of the work: all others begin with these. */
+static mt_status search_first_alone(judging *j, mt_err *err)
+{
+    mt_catalogue_search *const d = j->d;
+    const bool wanted = d->mixed && d->p->n_avoidances == 0 && !d->has_cuts && j->n > 0 &&
+                        d->c->search.max_evaluations <= 0 && mt_tolerance_is_sampled(d->c);
+    if (!wanted) {
+        return MT_OK;
+    }
+    mt_task_path own = mt_task_path_enter(d->workers[0]->task_path, "first");
+    own.inner = true;
+    d->has_cuts = true;
+    j->finds = true;
+    const mt_status rc = verify_mixed(j, 0, 0, &own, err);
+    j->finds = false;
+    j->first = 1;
+    return rc;
+}
+
 mt_status mt_catalogue_search_verify(mt_catalogue_search *d, int n, mt_combination *list,
                                      long budget, mt_err *err)
 {
     judging j = {.d = d, .n = n, .list = list, .budget = budget};
-    const mt_tasks searches = {n, verify_mixed, NULL, &j, "combinations"};
+    MT_TRY(search_first_alone(&j, err));
+    const mt_tasks searches = {n - j.first, verify_mixed, NULL, &j, "combinations"};
     const mt_tasks designs = {(n + PER_TASK - 1) / PER_TASK, verify_designs, serialize_designs,
                               &j, "lots of combinations"};
     MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->task_path,

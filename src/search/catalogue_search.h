@@ -96,6 +96,10 @@ typedef struct mt_catalogue_search {
     bool mixed;
     mt_nlp_values *values; /* [n_workers] where not mixed */
     int n_broken;          /* combinations */
+    /* where mixed: corners of the tolerances that the first combination searched needed; none
+     * where it has no design, or needs none */
+    struct mt_tolerance_cuts *cuts;
+    bool has_cuts; /* it was searched */
     long evals;
     int starts;
     mt_stop stop;

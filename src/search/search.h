@@ -35,7 +35,9 @@ typedef struct mt_at_position_price {
  * search_tolerances.c: mt_search_designs, and every design is verified over its tolerances
  * where the subproblem samples tolerance corners (problem/tolerance_cut.h). A violated corner
  * is added, and the search continues from the design within its budget, part of which is
- * reserved for verification; designs left unverified are infeasible. Limits on values are
+ * reserved for verification; designs left unverified are infeasible. Without a budget a search
+ * begins with the nominal design and the subproblem's cuts_known alone, where other corners
+ * come as cuts; cuts_found receives the cuts of what was found, in mem. Limits on values are
  * verified in the same way between the positions of a drive that their goals name. Designs that
  * still violate a limit are dropped where another meets everything. *prices (NULL: not wanted):
  * multipliers of limits between positions, of all designs, in mem.

@@ -168,6 +168,7 @@ typedef struct rounds {
     int round;
     bool *open; /* [n_solutions] not judged, or missed at a point that is a cut since */
     mt_tolerance_cuts cuts;
+    int n_added; /* to the cuts that were known */
     bool over_tolerances;
     bool over_positions;
     long judgement; /* most evaluations that a design takes over the positions */
@@ -213,6 +214,7 @@ static mt_status verify_solution(rounds *r, int i, bool last, mt_err *err)
     if (r->over_tolerances) {
         MT_TRY(verify_tolerances(r->ws, how, last, r->mem, &r->cuts, s, &r->open[i], err));
         r->out->evals += 1 + mt_subproblem_worth(r->c, r->cuts.solutions);
+        r->n_added += r->cuts.added;
     }
     if (r->over_positions && s->feasible && !lacks(r, r->judgement)) {
         MT_TRY(mt_search_verify_positions(r->ws, s->t, last, r->mem, &r->at_position, err));
@@ -357,7 +359,7 @@ static mt_status go_round(rounds *r, bool *cut, mt_err *err)
         /* with more cuts less is feasible: what was better counts no more */
         r->round++;
         MT_TRY(verify_open(r, round + 1 == ROUNDS || is_used_up(r), &any, err));
-        *cut = *cut || r->cuts.n > 0 || r->at_position.n > 0;
+        *cut = *cut || r->n_added > 0 || r->at_position.n > 0;
         MT_TRY(any ? search_again(r, err) : MT_OK);
     }
     return MT_OK;
@@ -509,26 +511,100 @@ static mt_status sort_out(rounds *r, mt_err *err)
     return MT_OK;
 }
 
+/* True where the hint is a design that a search from many starts found over its tolerances, and
+ * the nearest of those as good as it is wanted. */
+static bool is_known(const mt_subproblem *c)
+{
+    return c->best_alone && !c->as_found && c->hint != NULL;
+}
+
+/* True where the first search leaves sampled corners out: an analysis of each configuration is
+ * enough for it, and the corners that turn out to matter, which are few, come as cuts. A budget
+ * would be spent before these, and where one design is wanted the second search costs more than
+ * the first one saves, unless the cuts are known or of use to others. */
+static bool leaves_corners_out(const mt_subproblem *c)
+{
+    const bool pays = !c->best_alone || c->cuts_known != NULL || c->cuts_found != NULL;
+    return pays && c->search.max_evaluations <= 0 && mt_tolerance_is_sampled(c);
+}
+
+/* The search begins with these cuts. */
+static mt_status use_known_cuts(rounds *r, const mt_tolerance_cuts *known, mt_err *err)
+{
+    r->cuts.n = known->n;
+    r->cuts.room = known->n;
+    r->cuts.items = mt_arena_alloc(r->mem, (size_t)known->n, sizeof *r->cuts.items);
+    MT_TRY(mt_arena_check(r->mem, err));
+    for (int i = 0; i < known->n; i++) {
+        r->cuts.items[i] = known->items[i];
+    }
+    return MT_OK;
+}
+
 /* The designs, within what the budget leaves besides their verification. */
-static mt_status search_first(const rounds *r, mt_workspace *const *workers, int n_workers,
+static mt_status search_first(rounds *r, mt_workspace *const *workers, int n_workers,
                               mt_err *why, mt_err *err)
 {
     const long most = r->c->search.max_evaluations;
     const long wanted = JUDGED + r->c->search.judged_as;
     const long part = most / PART < wanted ? most / PART : wanted;
     mt_subproblem less = *r->c;
+    if (r->cuts.alone) {
+        MT_TRY(hold_cuts(r, &less, err));
+    }
     less.search.max_evaluations -= r->over_tolerances ? part : 0;
     /* of equal designs the nearest is sought with the cuts */
     less.as_found = r->c->as_found || r->over_tolerances;
     for (int i = 0; i < n_workers; i++) {
         mt_workspace_back(workers[i], &less);
     }
+    const bool known = r->cuts.n > 0 && is_known(r->c);
     const mt_status rc =
-        mt_search_designs(workers, n_workers, r->mem, r->out, r->stage, why, err);
+        known ? mt_search_from(r->ws, r->c->hint, r->mem, r->out, r->stage, err)
+              : mt_search_designs(workers, n_workers, r->mem, r->out, r->stage, why, err);
     for (int i = 0; i < n_workers; i++) {
         mt_workspace_back(workers[i], r->c);
     }
     return rc;
+}
+
+/* Verifies what the first search found, in rounds of cuts, and starts again with these. */
+static mt_status verify_and_cut(rounds *r, const mt_at_position_price **prices, mt_err *err)
+{
+    mt_nlp_result *const out = r->out;
+    bool cut = false;
+    bool again = false;
+    MT_TRY(open_all(r, err));
+    mt_status rc = go_round(r, &cut, err);
+    const bool known = is_known(r->c) && any_feasible(r);
+    if (rc == MT_OK && r->n_added > 0 && !known && !is_used_up(r)) {
+        rc = start_again(r, &again, err);
+        rc = rc == MT_OK && again ? go_round(r, &cut, err) : rc;
+    }
+    mt_at_position_cuts_free(&r->at_position); /* no case with them is left */
+    if (prices != NULL) {
+        *prices = r->prices;
+    }
+    if (rc == MT_E_INTERRUPTED) {
+        out->stop = MT_STOP_USER;
+        return MT_OK;
+    }
+    bool missed = false;
+    for (int i = 0; i < out->n_solutions; i++) {
+        missed = missed || !out->solutions[i].feasible || !r->kept[i];
+    }
+    return rc == MT_OK && (cut || missed) ? sort_out(r, err) : rc;
+}
+
+static mt_status search_and_verify(rounds *r, mt_workspace *const *workers, int n_workers,
+                                   const mt_at_position_price **prices, mt_err *why,
+                                   mt_err *err)
+{
+    const mt_nlp_result *const out = r->out;
+    MT_TRY(search_first(r, workers, n_workers, why, err));
+    const bool judged = r->over_tolerances || r->over_positions;
+    const bool any = out->n_solutions > 0 && !out->compromise && out->stop != MT_STOP_USER;
+    return judged && any ? verify_and_cut(r, prices, err) : MT_OK;
 }
 
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
@@ -542,32 +618,28 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     r.over_positions = mt_search_has_positions(r.c);
     r.judgement = (r.over_tolerances ? 1 + r.c->search.judged_as : 0) +
                   (r.over_positions ? 2 + mt_drive_path_most(r.c) : 0);
-    MT_TRY(search_first(&r, workers, n_workers, why, err));
-    if (!(r.over_tolerances || r.over_positions) || out->n_solutions == 0 || out->compromise ||
-        out->stop == MT_STOP_USER) {
+    rounds all = r; /* with all corners from the beginning */
+    r.cuts.alone = leaves_corners_out(r.c);
+    /* workspaces have room for the subproblem's own corners; hold_cuts makes it in the first */
+    if (r.cuts.alone && r.c->cuts_known != NULL && n_workers == 1) {
+        MT_TRY(use_known_cuts(&r, r.c->cuts_known, err));
+    }
+    MT_TRY(search_and_verify(&r, workers, n_workers, prices, why, err));
+    if (out->n_solutions > 0 && !out->compromise) {
+        if (r.c->cuts_found != NULL) {
+            *r.c->cuts_found = r.cuts;
+        }
         return MT_OK;
     }
-    bool cut = false;
-    bool again = false;
-    MT_TRY(open_all(&r, err));
-    mt_status rc = go_round(&r, &cut, err);
-    /* what begins at a design that was found over its tolerances has had these starts */
-    const bool known = r.c->best_alone && !r.c->as_found && any_feasible(&r);
-    if (rc == MT_OK && r.cuts.n > 0 && !known && !is_used_up(&r)) {
-        rc = start_again(&r, &again, err);
-        rc = rc == MT_OK && again ? go_round(&r, &cut, err) : rc;
-    }
-    mt_at_position_cuts_free(&r.at_position); /* no case with them is left */
-    if (prices != NULL) {
-        *prices = r.prices;
-    }
-    if (rc == MT_E_INTERRUPTED) {
-        out->stop = MT_STOP_USER;
+    if (!r.cuts.alone || r.c->cuts_known != NULL || out->stop != MT_STOP_DONE) {
         return MT_OK;
     }
-    bool missed = false;
-    for (int i = 0; i < out->n_solutions; i++) {
-        missed = missed || !out->solutions[i].feasible || !r.kept[i];
-    }
-    return rc == MT_OK && (cut || missed) ? sort_out(&r, err) : rc;
+    /* the nearest miss is one over the tolerances */
+    const mt_nlp_result before = *out;
+    mt_steps steps = before.steps;
+    MT_TRY(search_and_verify(&all, workers, n_workers, prices, why, err));
+    mt_steps_append(&steps, &out->steps, before.evals, 0, r.round + 1);
+    out->steps = steps;
+    out->evals += before.evals;
+    return MT_OK;
 }
