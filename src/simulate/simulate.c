@@ -196,20 +196,20 @@ static bool turns(const mt_sim *s, int g, double end)
 }
 
 /* Where the gauge's velocity changes its sign in the step from t to t + h: by Newton on the
- * velocity at the ends of shorter steps, from the root of the chord. */
+ * velocity at the ends of shorter steps, from the root of the chord. work[3 n_gauges]. */
 static mt_status find_turning(run *r, double t, double h, int g, const double end[3],
-                              mt_err *err)
+                              double *work, mt_err *err)
 {
     mt_sim *const s = &r->s;
     const double v0 = s->speed[g];
     double next = h * v0 / (v0 - end[1]);
     double x = h;
-    double read[3] = {end[0], end[1], end[2]};
+    double *const read = work + ((ptrdiff_t)3 * g);
+    memcpy(read, end, 3 * sizeof *read);
     for (int i = 0; i < TURN_STEPS && fabs(next - x) > TURN_FOUND * h; i++) {
         x = next;
         MT_TRY(mt_sim_advance(s, t, x, err));
-        MT_TRY(mt_sim_ahead(s, t + x, err));
-        mt_sim_gauge_ahead(s, g, read);
+        MT_TRY(mt_sim_ahead(s, t + x, work, err));
         next = fmin(fmax(x - (read[1] / read[2]), TURN_FOUND * h), h);
     }
     mt_turnings *const list = &r->out->turnings[g];
@@ -227,18 +227,18 @@ static mt_status note_turnings(run *r, double t, double h, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     double *const whole = mt_arena_f64(s->mem, (size_t)s->n, 1);
     double *const ends = mt_arena_f64(s->mem, 3, (size_t)s->opt->n_gauges);
+    double *const work = mt_arena_f64(s->mem, 3, (size_t)s->opt->n_gauges);
     MT_TRY(mt_arena_check(s->mem, err));
     memcpy(whole, s->y, (size_t)s->n * sizeof *whole);
-    MT_TRY(mt_sim_ahead(s, t + h, err));
+    MT_TRY(mt_sim_ahead(s, t + h, ends, err));
     bool any = false;
     for (int g = 0; g < s->opt->n_gauges; g++) {
-        mt_sim_gauge_ahead(s, g, ends + ((ptrdiff_t)3 * g));
         any = any || turns(s, g, ends[(3 * g) + 1]);
     }
     for (int g = 0; g < s->opt->n_gauges && any; g++) {
         const double *const end = ends + ((ptrdiff_t)3 * g);
         if (turns(s, g, end[1])) {
-            MT_TRY(find_turning(r, t, h, g, end, err));
+            MT_TRY(find_turning(r, t, h, g, end, work, err));
         }
     }
     memcpy(s->y, whole, (size_t)s->n * sizeof *whole);

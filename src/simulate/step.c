@@ -654,14 +654,13 @@ mt_status mt_sim_gauge(mt_sim *s, double t, int gauge, double out[3], mt_err *er
     return rc;
 }
 
-mt_status mt_sim_ahead(mt_sim *s, double t, mt_err *err)
+mt_status mt_sim_ahead(mt_sim *s, double t, double *out, mt_err *err)
 {
-    return mt_sim_slope(s, t, s->y, s->probe, err);
-}
-
-void mt_sim_gauge_ahead(mt_sim *s, int gauge, double out[3])
-{
-    read_gauge(s, gauge, s->y, s->probe + s->nq, out);
+    MT_TRY(mt_sim_slope(s, t, s->y, s->probe, err));
+    for (int i = 0; i < s->opt->n_gauges; i++) {
+        read_gauge(s, i, s->y, s->probe + s->nq, out + ((ptrdiff_t)3 * i));
+    }
+    return MT_OK;
 }
 
 static mt_status allocate_step_work(mt_sim *s, mt_err *err)
