@@ -14,7 +14,8 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
     "CommandCheck", "CommandDiff", "CommandExamples", "CommandMac", "CommandModes",
-    "CommandResponse", "CommandSchema", "CommandSensitivity", "CommandSimulate", "CommandSweep",
+    "CommandProfile", "CommandResponse", "CommandSchema", "CommandSensitivity",
+    "CommandSimulate", "CommandSweep",
 ]
 
 
@@ -2289,6 +2290,108 @@ class CommandModesDampedMode(TypedDict):
     residual: float
 
 
+class CommandProfileListed(TypedDict):
+    """A file that is part of the program."""
+
+    name: str
+    text: str
+
+
+class CommandProfileCombine(TypedDict):
+    """How the peak follows from the parts."""
+
+    sigma: float
+    tones: Literal["sum", "largest", "root_sum_square"]
+
+
+class CommandProfileSpectrum(TypedDict):
+    """With --spectrum: what it does to one mass."""
+
+    damping_ratio: float
+    masses: List["CommandProfileMass"]
+
+
+class _CommandProfileProfileAlways(TypedDict):
+    file: str
+    name: Optional[str]
+    source: Optional[str]
+    axis: Optional[str]
+    rms_g: float
+    rms_m_per_s2: float
+    random: List["CommandProfileRandom"]
+    tones: List["CommandProfileTone"]
+    combine: "CommandProfileCombine"
+    marks: List[str]
+
+
+class CommandProfileProfile(_CommandProfileProfileAlways, total=False):
+    """What a profile of vibration requires."""
+
+    spectrum: "CommandProfileSpectrum"
+
+
+class CommandProfileRandom(TypedDict):
+    """A random part of a profile."""
+
+    rms_g: float
+    rms_m_per_s2: float
+    published_rms_g: Optional[float]
+    origin: Optional[Literal["published", "identified", "assumed"]]
+    source: Optional[str]
+    breakpoints: List["CommandProfileBreakpoint"]
+
+
+class CommandProfileBreakpoint(TypedDict):
+    """A breakpoint of a spectral density."""
+
+    frequency_hz: float
+    psd_g2_per_hz: float
+    psd_m2_per_s3: float
+    slope_db_per_octave: Optional[float]
+
+
+class CommandProfileTone(TypedDict):
+    """A tone of a profile."""
+
+    tone: str
+    lower_hz: float
+    upper_hz: float
+    acceleration_g: float
+    acceleration_m_per_s2: float
+    origin: Optional[Literal["published", "identified", "assumed"]]
+    source: Optional[str]
+
+
+class _CommandProfileMassAlways(TypedDict):
+    natural_frequency_hz: float
+    end: Literal["finite", "infinite", "unstable"]
+    unit: str
+    rms: Optional[float]
+    rms_error_at_most: Optional[float]
+    sine: Optional[float]
+    peak: Optional[float]
+    tones: List["CommandProfileVibratedTone"]
+
+
+class CommandProfileMass(_CommandProfileMassAlways, total=False):
+    """The absolute acceleration of one mass on a spring."""
+
+    rms_g: Optional[float]
+    sine_g: Optional[float]
+    peak_g: Optional[float]
+
+
+class CommandProfileVibratedTone(TypedDict):
+    """The response to one tone."""
+
+    tone: str
+    end: Literal["finite", "infinite", "unstable"]
+    frequency_hz: Optional[float]
+    peak: Optional[float]
+    excess_at_most: Optional[float]
+    at_edge: bool
+
+
 class CommandResponseCombine(TypedDict):
     """How the peak follows from the parts."""
 
@@ -2480,13 +2583,6 @@ class CommandSensitivityNoDerivative(TypedDict):
     joints: List[str]
 
 
-class CommandSimulateCombine(TypedDict):
-    """The rule that combines peaks."""
-
-    sigma: float
-    tones: Literal["sum", "largest", "root_sum_square"]
-
-
 class CommandSimulateOutput(TypedDict):
     """A quantity over time."""
 
@@ -2537,6 +2633,13 @@ class CommandSimulateTone(TypedDict):
     damping_ratio: float
     amplitude: float
     phase_rad: float
+
+
+class CommandSimulateCombine(TypedDict):
+    """How the peak follows from the parts."""
+
+    sigma: float
+    tones: Literal["sum", "largest", "root_sum_square"]
 
 
 class CommandSimulateVibration(TypedDict):
@@ -2659,6 +2762,7 @@ CommandModes = Union[
     List[Union["CommandModesConfiguration", "CommandModesFailed"]], "CommandModesConfiguration",
     "CommandModesFailed"
 ]
+CommandProfile = Union[List["CommandProfileListed"], "CommandProfileProfile"]
 CommandResponse = Union[
     List[Union["CommandResponseConfiguration", "CommandResponseFailed"]],
     "CommandResponseConfiguration", "CommandResponseFailed"
