@@ -297,16 +297,18 @@ static const mt_field point_fields[] = {
     MT_F_NUMBER("gap_m", gap_m, "Largest violation of a joint.", MT_F_WHEN(reached)),
     MT_F_OPTION("dead_centre", dead_centre, mt_dead_centre_row, mt_dead_centre_record,
                 "A dead centre within about three degrees; null: none.", MT_F_WHEN(reached)),
-    MT_F_NUMBERS("frequencies_hz", hz, n_hz,
-                 "With --modes: natural frequencies by index; null: there is no such mode.",
-                 MT_F_WHEN(with_modes)),
-    MT_F_COUNT("rigid_body_modes", rigid, 0, "With --modes: number of modes of frequency 0.",
+    MT_F_NUMBERS(
+        "frequencies_hz", hz, n_hz,
+        "With --frequencies: natural frequencies by index; null: there is no such mode.",
+        MT_F_WHEN(with_modes)),
+    MT_F_COUNT("rigid_body_modes", rigid, 0,
+               "With --frequencies: number of modes of frequency 0.", MT_F_WHEN(with_modes)),
+    MT_F_COUNT("unstable_modes", unstable, 0, "With --frequencies: number of modes that grow.",
                MT_F_WHEN(with_modes)),
-    MT_F_COUNT("unstable_modes", unstable, 0, "With --modes: number of modes that grow.",
-               MT_F_WHEN(with_modes)),
-    MT_F_COUNT("undecided_modes", undecided, 0,
-               "With --modes: number of modes of which rounding hides whether they are stable.",
-               MT_F_WHEN(with_modes)),
+    MT_F_COUNT(
+        "undecided_modes", undecided, 0,
+        "With --frequencies: number of modes of which rounding hides whether they are stable.",
+        MT_F_WHEN(with_modes)),
 };
 static const mt_record point_record =
     MT_F_RECORD_OF(point_fields, "point", "A position of the driven joint.");
