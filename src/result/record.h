@@ -67,17 +67,14 @@ typedef struct mt_field {
     /* Of a text: older programs wrote it in place of the record that holds it, whose other
      * members are `later` all. */
     bool alone;
-    /* Of what is written and never read (answers of commands): it is there only where the bool
-     * at `when` is true. */
+    /* Of what is written and never read (answers of commands). It is there only where the bool
+     * at `when` is true; a value is a truth value where the bool at `truth` is true; numbers
+     * stand as far apart as the int at `step` says. */
     bool optional;
-    size_t when;
-    /* Of a value that is written and never read: a truth value where the bool at `truth` is
-     * true. */
     bool logical;
-    size_t truth;
-    /* Of numbers that are written and never read: they stand as far apart as the int at `step`
-     * says. */
     bool strided;
+    size_t when;
+    size_t truth;
     size_t step;
 } mt_field;
 

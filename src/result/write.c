@@ -196,7 +196,8 @@ static void put_record(mt_json_writer *w, const char *name, const mt_record *rec
 
 void mt_record_put(mt_json_writer *w, const mt_record *record, const void *item)
 {
-    put_members(w, NULL, record, item, NULL);
+    const names none = {0, NULL};
+    put_members(w, NULL, record, item, &none);
 }
 
 void mt_record_put_object(mt_json_writer *w, const char *name, const mt_record *record,
@@ -209,10 +210,11 @@ void mt_record_put_object(mt_json_writer *w, const char *name, const mt_record *
 void mt_json_put_warnings(mt_json_writer *w, const char *name, const mt_warning_list *list,
                           mt_warning_level level)
 {
+    const names none = {0, NULL};
     mt_json_open(w, name, '[');
     for (int i = 0; i < list->n; i++) {
         if (list->items[i].level == level) {
-            put_record(w, NULL, &mt_warning_record, false, &list->items[i], NULL);
+            put_record(w, NULL, &mt_warning_record, false, &list->items[i], &none);
         }
     }
     mt_json_close(w);
