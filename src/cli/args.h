@@ -135,7 +135,8 @@ typedef enum mt_answer_form {
      * names it that one, without the list */
     MT_ANSWER_CONFIGURATIONS,
     MT_ANSWER_LIST, /* the record of each in a list */
-    MT_ANSWER_FILES /* mt_listed_record of each file in a list; with an operand the record, if any */
+    /* mt_listed_record of each file in a list; with an operand the record, if there is one */
+    MT_ANSWER_FILES
 } mt_answer_form;
 
 typedef struct mt_answer {

@@ -335,7 +335,7 @@ static void add_messages(const mt_warning_list *found, const char *path,
     mt_text_free(&text);
 }
 
-/* What was read: doubts borrow its texts. */
+/* What was read: warnings borrow its texts. */
 typedef struct subject {
     mt_model *model;
     mt_study *study;
@@ -428,10 +428,10 @@ typedef struct checked_row {
     int n_problems;
     file_problem *problems;
     int left_out;
-    int n_doubts;
-    mt_warning *doubts;
-    int n_facts;
-    mt_warning *facts;
+    int n_warnings;
+    mt_warning *warnings;
+    int n_notes;
+    mt_warning *notes;
 } checked_row;
 
 #define THIS checked_row
@@ -444,9 +444,9 @@ static const mt_field checked_fields[] = {
         "Its problems and those of the files that it names; what was told of a file before "
         "it is left out."),
     MT_F_COUNT("left_out", left_out, 0, "How many more there are."),
-    MT_F_LIST("doubts", doubts, n_doubts, mt_warning, mt_warning_record,
+    MT_F_LIST("doubts", warnings, n_warnings, mt_warning, mt_warning_record,
               "What is suspicious about its configurations."),
-    MT_F_LIST("facts", facts, n_facts, mt_warning, mt_warning_record,
+    MT_F_LIST("facts", notes, n_notes, mt_warning, mt_warning_record,
               "What to know of its configurations."),
 };
 static const mt_record checked_record =
@@ -492,8 +492,8 @@ static void put_file(output *to, checked_row *row, const mt_diagnostics *message
     switch (to->format) {
     case MT_FORMAT_JSON:
         list_problems(row->file, messages, failure, mem, row);
-        row->doubts = mt_warning_pick(found, MT_LEVEL_WARNING, mem, &row->n_doubts);
-        row->facts = mt_warning_pick(found, MT_LEVEL_NOTE, mem, &row->n_facts);
+        row->warnings = mt_warning_pick(found, MT_LEVEL_WARNING, mem, &row->n_warnings);
+        row->notes = mt_warning_pick(found, MT_LEVEL_NOTE, mem, &row->n_notes);
         if (!mt_arena_failed(mem)) {
             mt_record_put_object(&to->w, NULL, &checked_record, row, 0, NULL);
         }

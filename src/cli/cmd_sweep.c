@@ -344,7 +344,8 @@ static const mt_field swept_fields[] = {
     MT_F_CHOICE("hold", hold, holds,
                 "What holds each position: a lock of the joint, or a spring that is trimmed."),
     MT_F_TEXT_OR_NULL("spring", spring, "The spring that is trimmed; null: a lock holds."),
-    MT_F_LIST("points", points, n, point_row, point_record, "All positions, in their order."),
+    MT_F_LIST("points", points, n, point_row, point_record,
+              "All positions, from first to last."),
 };
 static const mt_record swept_record =
     MT_F_RECORD_OF(swept_fields, "configuration", "A configuration, swept.");
