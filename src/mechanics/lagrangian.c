@@ -432,34 +432,6 @@ mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_are
     return mt_arena_check(mem, err);
 }
 
-/* Jets that are kept take a kilobyte each: few enough that a processor's cache has them. */
-enum { MOST_JETS = 1000 };
-
-static int terms_of(const mt_system *sys)
-{
-    int terms = 0;
-    for (int i = 0; i < sys->n_constraints; i++) {
-        terms += sys->constraints[i].terms;
-    }
-    return terms;
-}
-
-void mt_jets_init(mt_jets *jets, const mt_system *sys, mt_arena *mem)
-{
-    const int n = (2 * sys->n_springs) + terms_of(sys);
-    const size_t measures = (size_t)sys->n_measures;
-    *jets = (mt_jets){.pose = NULL};
-    if (n > MOST_JETS) {
-        return;
-    }
-    jets->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *jets->pose);
-    jets->turn = mt_arena_f64(mem, measures, 1);
-    jets->known = mt_arena_alloc(mem, (size_t)n, sizeof *jets->known);
-    jets->jet = mt_arena_alloc(mem, (size_t)n, sizeof *jets->jet);
-    jets->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *jets->vec);
-    jets->beam = mt_arena_f64(mem, measures, MT_BEAM_NUMBERS);
-}
-
 static double beam_number(const mt_data *d, int measure, int k)
 {
     const mt_measure_def *const def = &d->sys->measures[measure];
@@ -524,7 +496,7 @@ static void keep_jets_at(const mt_data *d, const mt_placement *at, const mt_lagr
     memcpy(jets->pose, at->pose, (size_t)sys->n_bodies * sizeof *at->pose);
     memcpy(jets->turn, at->turn, (size_t)sys->n_measures * sizeof *at->turn);
     take_numbers(d, jets);
-    memset(jets->known, 0, (size_t)((2 * sys->n_springs) + terms_of(sys)) * sizeof(bool));
+    memset(jets->known, 0, (size_t)jets->n * sizeof *jets->known);
 }
 
 /* The jet of a measure, kept under its number or else in `own`. */

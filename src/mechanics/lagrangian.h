@@ -136,10 +136,11 @@ typedef struct mt_sparse_row {
 /* The jets of all measures of springs and constraints at one position, each computed once,
  * however often an energy is evaluated there, of any design with the same geometry. */
 typedef struct mt_jets {
-    mt_pose *pose; /* [bodies] where they are known; NULL: none are kept */
-    double *turn;  /* [measures] */
-    bool *known;   /* [2 springs + terms of constraints] */
-    mt_relative_jet *jet;
+    int n;                /* of springs' measures, two each, and terms of constraints */
+    mt_pose *pose;        /* [bodies] where they are known; NULL: none are kept */
+    double *turn;         /* [measures] */
+    bool *known;          /* [n] */
+    mt_relative_jet *jet; /* [n] */
     /* the numbers that they are of */
     mt_cx (*vec)[3]; /* [vecs] */
     double *beam;    /* [measures x MT_BEAM_NUMBERS], of beams */
@@ -194,9 +195,6 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
 /* Without h, and with A by rows: O(constraints) of memory. */
 mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                   mt_err *err);
-/* Nothing is kept of systems with many measures. In mem, a shortage of which is the caller's
- * to report. */
-void mt_jets_init(mt_jets *jets, const mt_system *sys, mt_arena *mem);
 /* out[nq] += A^T lambda, of the first m rows. */
 void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, double *out);
 /* Fill terms, pieces and push as well, from the next evaluation on. */

@@ -527,12 +527,47 @@ void mt_linear_delete(mt_linear *lin)
     if (lin != NULL) {
         mt_arena_free(&lin->scratch);
         mt_arena_free(&lin->reduced_mem);
-        mt_newton_start_free(&lin->start);
+        mt_arena_free(&lin->start.mem);
         leave_geometry(lin);
         mt_arena_free(&lin->base);
         mt_profile_add(lin->stages.profile, &lin->stages.counts);
         free(lin);
     }
+}
+
+/* Jets that are kept take a kilobyte each: few enough that a processor's cache has them. */
+enum { MOST_JETS = 1000 };
+
+/* Nothing is kept of systems with many measures. */
+static void init_jets(mt_jets *jets, const mt_system *sys, mt_arena *mem)
+{
+    const size_t measures = (size_t)sys->n_measures;
+    int n = 2 * sys->n_springs;
+    for (int i = 0; i < sys->n_constraints; i++) {
+        n += sys->constraints[i].terms;
+    }
+    *jets = (mt_jets){.pose = NULL};
+    if (n > MOST_JETS) {
+        return;
+    }
+    jets->n = n;
+    jets->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *jets->pose);
+    jets->turn = mt_arena_f64(mem, measures, 1);
+    jets->known = mt_arena_alloc(mem, (size_t)n, sizeof *jets->known);
+    jets->jet = mt_arena_alloc(mem, (size_t)n, sizeof *jets->jet);
+    jets->vec = mt_arena_alloc(mem, (size_t)sys->n_vecs, sizeof *jets->vec);
+    jets->beam = mt_arena_f64(mem, measures, MT_BEAM_NUMBERS);
+}
+
+/* What equilibria keep from design to design. */
+static mt_status init_start(mt_linear *lin, mt_err *err)
+{
+    lin->start = (mt_newton_start){.rows = -1};
+    init_jets(&lin->start.jets, lin->sys, &lin->base);
+    init_jets(&lin->start.end, lin->sys, &lin->base);
+    lin->data.start = &lin->start;
+    MT_TRY(mt_arena_check(&lin->base, err));
+    return mt_arena_init(&lin->start.mem, 0, err);
 }
 
 static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
@@ -549,8 +584,7 @@ static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
     MT_TRY(mt_data_init(&lin->data, sys, &lin->base, err));
     MT_TRY(mt_data_init(&lin->dual, sys, &lin->base, err));
     if (sys->loaded || sys->driven) {
-        MT_TRY(mt_newton_start_init(&lin->start, sys, &lin->base, err));
-        lin->data.start = &lin->start;
+        MT_TRY(init_start(lin, err));
     }
     lin->data.value = lin->value;
     lin->dual.value = lin->value;

@@ -88,21 +88,6 @@ static void want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem)
     l->h = mt_arena_f64(mem, sys->layout->envelope.count, 1);
 }
 
-mt_status mt_newton_start_init(mt_newton_start *start, const mt_system *sys, mt_arena *mem,
-                               mt_err *err)
-{
-    *start = (mt_newton_start){.rows = -1};
-    mt_jets_init(&start->jets, sys, mem);
-    mt_jets_init(&start->end, sys, mem);
-    MT_TRY(mt_arena_check(mem, err));
-    return mt_arena_init(&start->mem, 0, err);
-}
-
-void mt_newton_start_free(mt_newton_start *start)
-{
-    mt_arena_free(&start->mem);
-}
-
 mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
                               mt_err *err)
 {

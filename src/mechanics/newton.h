@@ -40,12 +40,6 @@ typedef struct mt_newton_start {
     mt_arena mem; /* of row and least */
 } mt_newton_start;
 
-/* jets in mem; mt_newton_start_free leaves them to it, and accepts what is zero. Fails:
- * MT_E_MEMORY. */
-mt_status mt_newton_start_init(mt_newton_start *start, const mt_system *sys, mt_arena *mem,
-                               mt_err *err);
-void mt_newton_start_free(mt_newton_start *start);
-
 /*
  * Solver of the equations of a step. Sparse, as a saddle-point system, where that is safely
  * regular; otherwise dense in a basis of the freedoms with a pseudo-inverse, which handles
