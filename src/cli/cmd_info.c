@@ -555,9 +555,10 @@ static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
     mt_json_put_number(w, "gap_m", i->gap_m);
     json_damping(w, v);
     cli_json_conventions(w, &v->conventions);
-    mt_cli_json_dead_centre(w, &v->nearness);
+    mt_record_put_object(w, "dead_centre", &mt_dead_centre_record,
+                         mt_cli_dead_centre(&v->nearness, &v->mem), 0, NULL);
     mt_json_close(w);
-    return MT_OK;
+    return mt_arena_check(&v->mem, err);
 }
 
 static const char *point_text(const double *x, int n, char *text, size_t size)

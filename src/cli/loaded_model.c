@@ -328,15 +328,6 @@ static const mt_field joints_fields[] = {
 const mt_record mt_joints_record = MT_F_BARE_RECORD_OF(joints_fields);
 #undef THIS
 
-mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem)
-{
-    mt_joints_row row = {.name = mt_arena_alloc(mem, (size_t)joints->n, sizeof *row.name)};
-    for (; row.name != NULL && row.n < joints->n; row.n++) {
-        row.name[row.n] = joints->name[row.n];
-    }
-    return row;
-}
-
 mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
                            mt_err *err)
 {
@@ -385,28 +376,6 @@ void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
         mt_text_addf(out, "  %s: %s\n", d->level == MT_LEVEL_WARNING ? "doubtful" : "note",
                      d->text);
     }
-}
-
-static void json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints)
-{
-    mt_json_open_flat(w, member, '[');
-    for (int i = 0; i < joints->n; i++) {
-        mt_json_put_string(w, NULL, joints->name[i]);
-    }
-    mt_json_close(w);
-}
-
-void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness)
-{
-    if (!nearness->near) {
-        mt_json_put_null(w, "dead_centre");
-        return;
-    }
-    mt_json_open(w, "dead_centre", '{');
-    mt_json_put_number(w, "distance", nearness->distance);
-    mt_json_put_number(w, "independence", nearness->independence);
-    json_joints(w, "joints", &nearness->joints);
-    mt_json_close(w);
 }
 
 /* --model takes a file as it is, with a warning where it is not what was solved; without it the

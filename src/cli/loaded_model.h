@@ -97,7 +97,16 @@ typedef struct mt_joints_row {
     int n;
 } mt_joints_row;
 extern const mt_record mt_joints_record;
-mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem);
+/* In mem, which remembers a shortage. */
+static inline mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem)
+{
+    mt_joints_row row = {.name = mt_arena_alloc(mem, (size_t)joints->n, sizeof *row.name)};
+    for (; row.name != NULL && row.n < joints->n; row.n++) {
+        row.name[row.n] = joints->name[row.n];
+    }
+    return row;
+}
+
 /* Sets of joints whose equations depend on each other: *n of them, *out not NULL, in mem. */
 mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
                            mt_err *err);
@@ -111,9 +120,6 @@ typedef struct mt_dead_centre_row {
 extern const mt_record mt_dead_centre_record;
 /* NULL: none is near. In mem, which remembers a shortage. */
 mt_dead_centre_row *mt_cli_dead_centre(const mt_nearness *nearness, mt_arena *mem);
-/* Member "dead_centre" of an open object: null, or the distance to one and the joints whose
- * equations become dependent there. */
-void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);
 
 /* The model of a result, the first operand: the file of --model, else a file found that holds
  * exactly the bytes that were solved. file: mt_file_free; path: heap. Fails: MT_E_INPUT (not

@@ -150,35 +150,6 @@ mt_status mt_vibrated_values_of(const mt_vibrated *v, mt_arena *mem, mt_vibrated
     return mt_arena_check(mem, err);
 }
 
-void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v)
-{
-    const mt_vibration_response *const r = v->response;
-    mt_json_put_string(w, "end", mt_forced_end_name(r->end));
-    mt_json_put_string(w, "unit", vibrated_unit(v));
-    mt_json_put_number(w, "rms", r->rms);
-    mt_json_put_number(w, "rms_error_at_most", r->rms_bound);
-    mt_json_put_number(w, "sine", r->sine);
-    mt_json_put_number(w, "peak", r->peak);
-    if (v->is_acceleration) {
-        mt_json_put_number(w, "rms_g", in_g(v, r->rms));
-        mt_json_put_number(w, "sine_g", in_g(v, r->sine));
-        mt_json_put_number(w, "peak_g", in_g(v, r->peak));
-    }
-    mt_json_open(w, "tones", '[');
-    for (int i = 0; i < r->n_tones; i++) {
-        const mt_sine_peak *const p = &r->tones[i];
-        mt_json_open_flat(w, NULL, '{');
-        mt_json_put_string(w, "tone", v->profile->tones[i].label);
-        mt_json_put_string(w, "end", mt_forced_end_name(p->end));
-        mt_json_put_number(w, "frequency_hz", p->omega / TWO_PI);
-        mt_json_put_number(w, "peak", mt_vibration_respond_tone(v->profile, r, i));
-        mt_json_put_number(w, "excess_at_most", p->excess);
-        mt_json_put_bool(w, "at_edge", p->at_edge);
-        mt_json_close(w);
-    }
-    mt_json_close(w);
-}
-
 const char *mt_vibrated_axis(const mt_vibration *v)
 {
     static const char *const names[] = {"x", "y", "z"};
@@ -209,17 +180,4 @@ void mt_vibrated_marks(const mt_vibration *v, mt_text *out)
         mt_text_addf(out, "  - %s\n", v->marks[i]);
     }
     mt_text_add(out, v->n_marks > 0 ? "\n" : "");
-}
-
-void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v)
-{
-    mt_json_open(w, "combine", '{');
-    mt_json_put_number(w, "sigma", v->sigma);
-    mt_json_put_string(w, "tones", mt_vibration_sum_names[v->rule]);
-    mt_json_close(w);
-    mt_json_open(w, "marks", '[');
-    for (int i = 0; i < v->n_marks; i++) {
-        mt_json_put_string(w, NULL, v->marks[i]);
-    }
-    mt_json_close(w);
 }

@@ -12,8 +12,6 @@ const char *mt_vibrated_name(const mt_vibration *v); /* its name, or its path */
 void mt_vibrated_rule(const mt_vibration *v, mt_text *out);
 /* Append what is assumed or unconfirmed in the profile; nothing where all is confirmed. */
 void mt_vibrated_marks(const mt_vibration *v, mt_text *out);
-/* The rule as members of an open object, and the profile's marks. */
-void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v);
 
 /* The vibration of a response under a profile, as a row of tables and JSON. Quantities other
  * than accelerations have no values in g. */
@@ -99,7 +97,5 @@ void mt_vibrated_row(mt_table *t, const mt_vibrated *v);
 void mt_vibrated_tone_columns(mt_table *t);
 /* The cells of one tone. */
 void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone);
-/* Members of an open object. */
-void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v);
 
 #endif
