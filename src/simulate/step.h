@@ -110,8 +110,8 @@ mt_status mt_sim_advance(mt_sim *s, double t, double h, mt_err *err);
 mt_status mt_sim_accept(mt_sim *s, double t, mt_err *err);
 /* Value, velocity and absolute acceleration of a gauge at the beginning of the step, at t. */
 mt_status mt_sim_gauge(mt_sim *s, double t, int gauge, double out[3], mt_err *err);
-/* Values, velocities and accelerations relative to the ground of all gauges, out[3 n_gauges], at
- * s->y, after mt_sim_advance to t. */
+/* Values, velocities and accelerations relative to the ground of all gauges, out[3 n_gauges],
+ * at s->y, after mt_sim_advance to t. */
 mt_status mt_sim_ahead(mt_sim *s, double t, double *out, mt_err *err);
 
 /*
