@@ -249,8 +249,8 @@ static bool settle_curve(mt_reader *r, mt_addr value, curve_points *points)
         return false;
     }
     if (points->n_x != points->n_y) {
-        mt_diag_error(r->diags, value, "a curve has as many x as y, not %d and %d", points->n_x,
-                      points->n_y);
+        mt_diag_error(r->diags, mt_json_member(r->doc, value, "y"),
+                      "a curve has as many x as y, not %d and %d", points->n_x, points->n_y);
         return false;
     }
     for (int i = 0; i < points->n_x; i++) {
@@ -260,8 +260,9 @@ static bool settle_curve(mt_reader *r, mt_addr value, curve_points *points)
         points->x[i] = mt_unit_to_si(points->x_unit, points->x[i]);
         points->y[i] = mt_unit_to_si(points->y_unit, points->y[i]);
         if (i > 0 && !(points->x[i] > points->x[i - 1])) {
-            mt_diag_error(r->diags, value, "the x of a curve ascend: number %d is not above %d",
-                          i + 1, i);
+            mt_diag_error(r->diags, mt_json_member(r->doc, value, "x"),
+                          "the x of a curve ascend: number %d is not above number %d", i + 1,
+                          i);
             return false;
         }
     }

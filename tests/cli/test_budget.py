@@ -213,7 +213,7 @@ class Budget(CliTest):
         self.two_masses()
         for sets, said in ((["k1=2"], 'studies/two.json:1:118: error: /variables/0/parameter: the study varies "k1" itself'),
                            (["mm=2"], '--set: unknown parameter "mm"; did you mean "m"?'), (["m=2", "m=3"], 'parameter "m" is set twice'),
-                           (["m"], '"m" is not NAME=VALUE'), (["=2"], "is not NAME=VALUE"), (["m=1/0"], "the value is not finite"),
+                           (["m"], '"m" is not NAME=VALUE'), (["=2"], "is not NAME=VALUE"), (["m=1/0"], "--set: m=1/0: 1 / 0 has no finite value"),
                            (["m=2*q"], 'unknown name "q"'), (["m=-1"], 'body "a": mass_kg (-1) must not be negative')):
             for command in ("run", "compare"):
                 done = self.expect(2, command, "studies/two.json", *[a for s in sets for a in ("--set", s)])

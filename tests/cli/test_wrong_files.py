@@ -108,6 +108,8 @@ WRONG = {
     "sigma": [(set_to(-1), "error", "must be within 0 and 100"), (set_to(50), "warning", "far above")],
     ("speed", "value"): SPEED,
     # of models
+    ("curve", "x"): [(lambda v: v[::-1], "error", "ascend"), (lambda v: v[:-1], "error", "as many x as y")],
+    ("curve", "y"): [(lambda v: v[:1], "error", "2 to 10000 points"), (lambda v: [*v, 1], "error", "as many x as y")],
     "mass_kg": NEGATIVE, "density_kg_per_m3": POSITIVE, "youngs_modulus_pa": POSITIVE, "shear_modulus_pa": POSITIVE, "loss_factor": NEGATIVE,
     "radius_of_gyration_m": NEGATIVE, "free_length_m": NEGATIVE, "area_m2": [(set_to(-1), "error", "must be above 0|must not be negative")],
     "second_moment_m4": POSITIVE, "second_moment_other_m4": POSITIVE, "torsion_constant_m4": NEGATIVE, "coefficient": POSITIVE, "coefficient_other": POSITIVE,

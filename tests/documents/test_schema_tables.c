@@ -120,7 +120,7 @@ static size_t size_of_field(const mt_field *f)
     return f->type == MT_FIELD_RECORD ? f->record->size : sizes[f->type];
 }
 
-enum { LARGEST = 1024 };
+enum { LARGEST = 4096 };
 
 static void check_cover(mt_test *t, const mt_record *record)
 {
