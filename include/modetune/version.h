@@ -5,10 +5,10 @@
 
 #include "modetune/export.h"
 
-#define MT_VERSION_MAJOR  0
-#define MT_VERSION_MINOR  1
+#define MT_VERSION_MAJOR  1
+#define MT_VERSION_MINOR  0
 #define MT_VERSION_PATCH  0
-#define MT_VERSION_STRING "0.1.0"
+#define MT_VERSION_STRING "1.0.0"
 
 #ifdef __cplusplus
 extern "C" {

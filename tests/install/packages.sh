@@ -41,7 +41,7 @@ make_deb() {
         [[ $depends == *"$field"* ]] || fail "$deb: does not depend on $field"
     done
     dpkg-deb -c "$deb" >"$work/contents"
-    for field in bin/modetune lib/libmodetune.so lib/libmodetune.so.${version%.*} lib/libmodetune.a include/modetune/study.h \
+    for field in bin/modetune lib/libmodetune.so lib/libmodetune.so.${version%%.*} lib/libmodetune.a include/modetune/study.h \
         lib/pkgconfig/modetune.pc lib/cmake/modetune/modetune-config.cmake share/man/man1/modetune.1.gz share/man/man1/modetune-run.1.gz \
         share/bash-completion/completions/modetune share/zsh/vendor-completions/_modetune share/doc/modetune/copyright \
         share/doc/modetune/README.md share/doc/modetune/schemas/README.md share/doc/modetune/src/cli/README.md; do

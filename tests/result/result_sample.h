@@ -250,7 +250,7 @@ static void fill_run(mt_result *r)
 {
     r->n_objectives = MT_COUNT(OBJECTIVES);
     r->objectives = OBJECTIVES;
-    r->run = (mt_result_run){.modetune_version = "0.1.0",
+    r->run = (mt_result_run){.modetune_version = "1.0.0",
                              .build = {"0123456789ab", "GNU 12.2.0"},
                              .blas = "OpenBLAS 0.3.21",
                              .nlopt_version = "2.7.1",

@@ -12,7 +12,7 @@ from ctypes import (
 from pathlib import Path
 from typing import Any, Iterator, NamedTuple, Optional, Union
 
-SONAME = "libmodetune.so.0.1"  # before 1.0 each minor version may have another interface
+SONAME = "libmodetune.so.1"  # a later version with this number has all that this one has
 
 
 class Diagnostic(NamedTuple):
@@ -147,7 +147,7 @@ def _load() -> ctypes.CDLL:
 
 lib = _load()
 version: str = lib.mt_version().decode()
-if not SONAME.endswith("." + version.rpartition(".")[0]):
+if not SONAME.endswith(".so." + version.partition(".")[0]):
     raise ImportError(f"libmodetune {version} is not what this package is for ({SONAME})")
 
 
