@@ -78,12 +78,12 @@ What a command prints has no number of its own: its schema, `modetune schema com
 the program that prints it.
 """
 
-UNITS = (("_n_m_s_per_rad", "N m s/rad"), ("_n_m_per_rad", "N m/rad"), ("_n_s_per_m", "N s/m"), ("_n_per_m", "N/m"),
+UNITS = (("hz_per_percent", "Hz/%"), ("hz_per_unit", "Hz per unit"), ("_per_percent", None), ("_n_m_s_per_rad", "N m s/rad"), ("_n_m_per_rad", "N m/rad"), ("_n_s_per_m", "N s/m"), ("_n_per_m", "N/m"),
          ("_kg_per_m3", "kg/m^3"), ("_kg_m2", "kg m^2"), ("_m_per_rad", "m/rad"), ("_m_per_s2", "m/s^2"), ("_m2_per_s3", "m^2/s^3"),
          ("_g2_per_hz", "g^2/Hz"), ("_db_per_octave", "dB/octave"), ("_n_m", "N m"), ("_percent", "%"), ("_rad", "rad"),
          ("_deg", "degrees"), ("_rpm", "rpm"), ("_hz", "Hz"), ("_kg", "kg"), ("_pa", "Pa"), ("_m2", "m^2"), ("_m4", "m^4"), ("_rad_per_s", "rad/s"), ("_m_per_s", "m/s"),
          ("_per_s", "1/s"),
-         ("_n", "N"), ("_s", "s"), ("_m", "m"), ("_g", "g"))
+         ("_j", "J"), ("_n", "N"), ("_s", "s"), ("_m", "m"), ("_g", "g"))
 # What says something of the members of an object together, or of a value; all else has an entry of its own.
 KNOWN = {"$schema", "$comment", "title", "description", "type", "properties", "definitions", "required", "additionalProperties", "enum", "const", "items",
          "$ref", "allOf", "anyOf", "oneOf", "not", "if", "then", "else", "minimum", "maximum", "minItems", "maxItems", "minLength",

@@ -273,10 +273,10 @@ typedef struct magnitude_slope_row {
 #define THIS magnitude_slope_row
 static const mt_field magnitude_slope_fields[] = {
     MT_F_TEXT("parameter", parameter, "Its name."),
-    MT_F_NUMBER("value", value, "Its value in this configuration [SI]."),
+    MT_F_NUMBER("value", value, "Its value in this configuration, in SI."),
     MT_F_NUMBER_OR_NULL("magnitude_per_percent", per_percent,
                         "Change of the magnitude for one per cent more of it; null: the "
-                        "magnitude is 0 or infinite [in the unit of the response]."),
+                        "magnitude is 0 or infinite. In the unit of the response."),
 };
 static const mt_record magnitude_slope_record = MT_F_RECORD_OF(
     magnitude_slope_fields, "sensitivity", "What one parameter does to the magnitude.");
@@ -306,7 +306,8 @@ static const mt_field extreme_fields[] = {
         "kind", kind, extreme_kinds,
         "\"resonance\": of a mode that nothing damps, where the magnitude is infinite."),
     MT_F_NUMBER("frequency_hz", hz, "Where it is."),
-    MT_F_NUMBER_OR_NULL("magnitude", magnitude, "Magnitude of the response; null: infinite."),
+    MT_F_NUMBER_OR_NULL("magnitude", magnitude,
+                        "Magnitude of the response, in its unit; null: infinite."),
     MT_F_UNWRITTEN_TEXT(unit),
     MT_F_NUMBER_OR_NULL("phase_deg", phase_deg, "Phase of the output against the input."),
     MT_F_LIST("sensitivities", slopes, n_slopes, magnitude_slope_row, magnitude_slope_record,
@@ -504,8 +505,8 @@ typedef struct complex_row {
 
 #define THIS complex_row
 static const mt_field complex_fields[] = {
-    MT_F_NUMBER("re", re, "Real part."),
-    MT_F_NUMBER("im", im, "Imaginary part."),
+    MT_F_NUMBER("re", re, "Real part, in the unit of the response times s^k for (i omega)^k."),
+    MT_F_NUMBER("im", im, "Imaginary part, in the same unit."),
 };
 static const mt_record complex_record =
     MT_F_RECORD_OF(complex_fields, "coefficient", "A complex coefficient.");
@@ -520,8 +521,10 @@ typedef struct pole_row {
 static const mt_field pole_fields[] = {
     MT_F_NUMBER("re", pole.re, "Real part of the pole [1/s]."),
     MT_F_NUMBER("im", pole.im, "Imaginary part of the pole [rad/s]."),
-    MT_F_NUMBER("residue_re", residue.re, "Real part of its residue [unit times rad/s]."),
-    MT_F_NUMBER("residue_im", residue.im, "Imaginary part of its residue [unit times rad/s]."),
+    MT_F_NUMBER("residue_re", residue.re,
+                "Real part of its residue, in the unit of the response times rad/s."),
+    MT_F_NUMBER("residue_im", residue.im,
+                "Imaginary part of its residue, in the unit of the response times rad/s."),
 };
 static const mt_record pole_record =
     MT_F_RECORD_OF(pole_fields, "pole", "A pole of the response with its residue.");
@@ -588,15 +591,17 @@ static const mt_field response_fields[] = {
               "Its coefficients of (i omega)^0, ^1 and ^2.", MT_F_WHEN(with_polynomial),
               .flat = true),
     MT_F_NUMBERS("re", re, n,
-                 "Real part at each frequency [in unit]; null: infinite, or not a number."),
-    MT_F_NUMBERS("im", im, n, "Imaginary part at each frequency [in unit]."),
-    MT_F_NUMBERS("error", error, n, "Bound of the error at each frequency [in unit]."),
+                 "Real part at each frequency, in the unit that `unit` names; null: infinite, "
+                 "or not a number."),
+    MT_F_NUMBERS("im", im, n, "Imaginary part at each frequency, in the same unit."),
+    MT_F_NUMBERS("error", error, n, "Bound of the error at each frequency, in the same unit."),
     MT_F_RECORD("vibration", vibration, vibration_row, vibration_record,
                 "With --vibration: what the profile does to the output.",
                 MT_F_WHEN(with_vibration)),
     MT_F_TEXT("psd_unit", psd_unit, "Unit of the density.", MT_F_WHEN(with_vibration)),
     MT_F_NUMBERS("psd", psd, n,
-                 "Power spectral density of the output at each frequency [in psd_unit].",
+                 "Power spectral density of the output at each frequency, in the unit that "
+                 "`psd_unit` names.",
                  MT_F_WHEN(with_vibration)),
 };
 static const mt_record response_record =

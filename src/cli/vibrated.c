@@ -93,7 +93,7 @@ static const mt_field tone_fields[] = {
               "Why there is no finite number; \"finite\": there is one."),
     MT_F_NUMBER_OR_NULL("frequency_hz", frequency_hz,
                         "Where in its range the response is largest."),
-    MT_F_NUMBER_OR_NULL("peak", peak, "Peak there [in the unit of the response]."),
+    MT_F_NUMBER_OR_NULL("peak", peak, "Peak there, in the unit of the response."),
     MT_F_NUMBER_OR_NULL("excess_at_most", excess_at_most,
                         "Part of the peak by which it may be larger elsewhere in the range."),
     MT_F_FLAG("at_edge", at_edge, "It is largest at an end of the range."),

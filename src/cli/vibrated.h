@@ -52,22 +52,24 @@ mt_status mt_vibrated_values_of(const mt_vibrated *v, mt_arena *mem, mt_vibrated
                                 mt_err *err);
 
 /* The members of a record THIS with an mt_vibrated_values m. */
-#define MT_VIBRATED_FIELDS(m)                                                                  \
-    MT_F_ENUM("end", m.end, mt_forced_end, mt_forced_end_names,                                \
-              "Why there is no finite number: an undamped mode within the profile, or an "     \
-              "unstable one; \"finite\": there is one."),                                      \
-        MT_F_TEXT("unit", m.unit, "Unit of rms, sine and peak."),                              \
-        MT_F_NUMBER_OR_NULL("rms", m.rms, "RMS under the random parts [in unit]."),            \
-        MT_F_NUMBER_OR_NULL("rms_error_at_most", m.rms_error_at_most,                          \
-                            "Bound of its error [in unit]."),                                  \
-        MT_F_NUMBER_OR_NULL("sine", m.sine, "Peak under the tones [in unit]."),                \
-        MT_F_NUMBER_OR_NULL("peak", m.peak, "Peak by the rule that combines both [in unit]."), \
-        MT_F_NUMBER_OR_NULL("rms_g", m.rms_g, "rms of an acceleration.", MT_F_WHEN(m.in_g)),   \
-        MT_F_NUMBER_OR_NULL("sine_g", m.sine_g, "sine of an acceleration.",                    \
-                            MT_F_WHEN(m.in_g)),                                                \
-        MT_F_NUMBER_OR_NULL("peak_g", m.peak_g, "peak of an acceleration.",                    \
-                            MT_F_WHEN(m.in_g)),                                                \
-        MT_F_LIST("tones", m.tones, m.n_tones, mt_vibrated_tone, mt_vibrated_tone_record,      \
+#define MT_VIBRATED_FIELDS(m)                                                                \
+    MT_F_ENUM("end", m.end, mt_forced_end, mt_forced_end_names,                              \
+              "Why there is no finite number: an undamped mode within the profile, or an "   \
+              "unstable one; \"finite\": there is one."),                                    \
+        MT_F_TEXT("unit", m.unit, "Unit of rms, sine and peak."),                            \
+        MT_F_NUMBER_OR_NULL("rms", m.rms,                                                    \
+                            "RMS under the random parts, in the unit that `unit` names."),   \
+        MT_F_NUMBER_OR_NULL("rms_error_at_most", m.rms_error_at_most,                        \
+                            "Bound of its error, in the same unit."),                        \
+        MT_F_NUMBER_OR_NULL("sine", m.sine, "Peak under the tones, in the same unit."),      \
+        MT_F_NUMBER_OR_NULL("peak", m.peak,                                                  \
+                            "Peak by the rule that combines both, in the same unit."),       \
+        MT_F_NUMBER_OR_NULL("rms_g", m.rms_g, "rms of an acceleration.", MT_F_WHEN(m.in_g)), \
+        MT_F_NUMBER_OR_NULL("sine_g", m.sine_g, "sine of an acceleration.",                  \
+                            MT_F_WHEN(m.in_g)),                                              \
+        MT_F_NUMBER_OR_NULL("peak_g", m.peak_g, "peak of an acceleration.",                  \
+                            MT_F_WHEN(m.in_g)),                                              \
+        MT_F_LIST("tones", m.tones, m.n_tones, mt_vibrated_tone, mt_vibrated_tone_record,    \
                   "The tones, each where it shakes most.", .flat = true)
 
 /* The rule and the marks of a profile. */
