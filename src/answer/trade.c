@@ -1055,8 +1055,9 @@ static mt_status solve_all(trade *t, int threads, const mt_task_path *task_path,
     const int most = tiles ? (TILES + each - 1) / each : BLOCK;
     for (int known = 0; known < t->n;) {
         const int left = (t->n - known + size - 1) / size;
-        const int runs = left < most ? left : most;
-        const int to = runs < left ? known + (runs * size) : t->n;
+        const bool rest = left <= most;
+        const int runs = rest ? left : most;
+        const int to = rest ? t->n : known + (runs * size);
         t->from = known;
         const mt_tasks cold = {runs * each, solve_cold, serialize_cold, t,
                                tiles ? "stretches of points" : "points"};

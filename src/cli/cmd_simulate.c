@@ -674,8 +674,8 @@ enum { TONES_SHOWN = 4 };
 static double *values_of(const sim_view *v, int output)
 {
     const sim_output *const o = &v->request->outputs[output];
-    double *const of[] = {v->r->value, v->r->speed, v->r->acceleration};
-    return of[o->what] + o->gauge;
+    const int what = (int)o->what;
+    return (what == 0 ? v->r->value : what == 1 ? v->r->speed : v->r->acceleration) + o->gauge;
 }
 
 static const char *motion_output_unit(const sim_output *o)

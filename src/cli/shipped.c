@@ -179,10 +179,10 @@ static mt_status shipped_named(const mt_shipped_kind *kind, const char *name,
 {
     const char *known[SHIPPED_MOST];
     char text[SHIPPED_MOST][SHIPPED_NAME];
-    char of_command[SHIPPED_NAME];
     int n = 0;
     *out = find_shipped(kind, name, known, text, &n);
     if (*out == NULL && kind == &mt_shipped_schemas) {
+        char of_command[SHIPPED_NAME];
         (void)mt_snprintf(of_command, sizeof of_command, "command_%s", name);
         *out = find_shipped(kind, of_command, known, text, &n);
     }

@@ -52,6 +52,7 @@ mt_status mt_vibrated_values_of(const mt_vibrated *v, mt_arena *mem, mt_vibrated
                                 mt_err *err);
 
 /* The members of a record THIS with an mt_vibrated_values m. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): members of a struct */
 #define MT_VIBRATED_FIELDS(m)                                                                \
     MT_F_ENUM("end", m.end, mt_forced_end, mt_forced_end_names,                              \
               "Why there is no finite number: an undamped mode within the profile, or an "   \
@@ -91,6 +92,7 @@ mt_rule_row mt_rule_row_of(const mt_vibration *v);
                 "How the peak follows from the parts."),                 \
         MT_F_TEXTS("marks", m.marks, m.n_marks,                          \
                    "What is assumed or unconfirmed in the profile.")
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 /* Columns and row: RMS, largest tones and combined peak, after the caller's own columns. */
 void mt_vibrated_columns(mt_table *t);

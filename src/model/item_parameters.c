@@ -196,14 +196,14 @@ static void read_curve_numbers(mt_reader *r, const mt_key *key, mt_addr value, v
         const bool number = mt_reader_type(r, items.at, MT_KEY_VALUE);
         room[(*n)++] = number ? mt_json_number(r->doc, items.at) : nan("");
     }
-    memcpy((char *)item + key->at, &room, sizeof room);
+    *(double **)(void *)((char *)item + key->at) = room;
 }
 
 static void read_curve_unit(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     const char *const name = known_unit(r, value);
-    const mt_unit *const unit = name == NULL ? NULL : mt_unit_find(name);
-    memcpy((char *)item + key->at, &unit, sizeof unit);
+    *(const mt_unit **)(void *)((char *)item + key->at) =
+        name == NULL ? NULL : mt_unit_find(name);
 }
 
 /* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */

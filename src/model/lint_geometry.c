@@ -232,12 +232,13 @@ static void lint_hinge_axis(mt_lint *j, int i, const mt_link *l)
     if (!l->has_hinge_axis || j->model->dimension == 2) {
         return;
     }
-    if (direction_of_axis(j, l->hinge_axis, axis) == 0.0) {
+    const double length = direction_of_axis(j, l->hinge_axis, axis);
+    if (length == 0.0) {
         fault_axis(j, &item, l->hinge_axis, l->name.addr, "hinge_axis",
                    "has length 0 and no direction");
         return;
     }
-    if (!lint_position(j, &l->from, from) || !lint_position(j, &l->to, to)) {
+    if (!(length > 0.0) || !lint_position(j, &l->from, from) || !lint_position(j, &l->to, to)) {
         return;
     }
     double dot = 0.0;

@@ -544,8 +544,8 @@ bool mt_tolerance_row_is_sampled(const mt_subproblem *c, const mt_row *row)
 
 bool mt_tolerance_is_sampled(const mt_subproblem *c)
 {
-    if (c->tolerance_box != NULL && c->tolerance_box->sampled_later) {
-        return true;
+    if (c->tolerance_box == NULL || c->tolerance_box->sampled_later) {
+        return c->tolerance_box != NULL;
     }
     for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
         if (mt_tolerance_row_is_sampled(c, &c->rows.in.rows[k])) {

@@ -87,7 +87,8 @@ static void put_long(mt_json_writer *w, const mt_field *f, long value)
 
 static void put_value(mt_json_writer *w, const mt_field *f, const void *item)
 {
-    const double value = *(const double *)((const char *)item + f->offset);
+    double value = 0.0;
+    memcpy(&value, (const char *)item + f->offset, sizeof value);
     const char *const text = mt_record_get_pointer((const char *)item + f->other);
     if (text != NULL) {
         mt_json_put_string(w, f->name, text);
