@@ -20,6 +20,7 @@ typedef struct mode_shapes {
     bool sensors;
     int n;             /* channels; 0: none */
     const char **name; /* [n] "c1.y", "crank.rz" */
+    const char **head; /* [n] the name in CSV, with its unit */
     bool *turns;       /* [n] it is an angle */
     double *value;     /* n x modes, mass-normalised */
     double length_m;   /* length at which an angle is compared with a displacement */
@@ -226,6 +227,7 @@ static mt_status name_them(const mt_system *sys, int modes, mt_arena *mem, mode_
     out->sensors = sys->n_channels > 0;
     out->n = out->sensors ? sys->n_channels : sys->nq;
     out->name = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->name);
+    out->head = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->head);
     out->value = mt_arena_f64(mem, (size_t)out->n, (size_t)modes);
     out->turns = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->turns);
     out->largest = mt_arena_f64(mem, (size_t)modes, 1);
@@ -244,6 +246,10 @@ static mt_status name_them(const mt_system *sys, int modes, mt_arena *mem, mode_
                 out->turns[q] = d >= 3;
             }
         }
+    }
+    for (int k = 0; k < out->n && !mt_arena_failed(mem); k++) {
+        out->head[k] = mt_arena_printf(mem, "%s_%s", out->name[k],
+                                       out->turns[k] ? "rad_per_m_sqrt_kg" : "per_sqrt_kg");
     }
     return mt_arena_check(mem, err);
 }
@@ -424,7 +430,11 @@ static const mt_record_column mode_columns[] = {
     MT_R_COLUMN(name, "name", 0, MT_IN_TABLES),
     MT_R_COLUMN(residual, "residual", RATIO_DIGITS, MT_IN_TABLES),
     MT_R_COLUMN(orthogonality, "orthogonality", RATIO_DIGITS, MT_IN_TABLES),
-    MT_R_COLUMN(omega_squared, "omega^2 [rad^2/s^2]", HZ_DIGITS, MT_IN_CSV),
+    {.offset = offsetof(THIS, omega_squared),
+     .heading = "omega^2 [rad^2/s^2]",
+     .member = "omega_squared_rad2_per_s2",
+     .digits = HZ_DIGITS,
+     .in = MT_IN_CSV},
 };
 static const mt_record_table mode_rows = MT_R_TABLE_OF(mode_record, mode_columns);
 #undef THIS
@@ -648,7 +658,7 @@ static mt_table csv_table(const mode_shapes *shapes)
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
     mt_table_record_columns(&t, &mode_rows, MT_IN_CSV);
     for (int k = 0; k < shapes->n; k++) {
-        mt_table_column(&t, shapes->name[k], shapes->name[k], MT_ALIGN_POINT);
+        mt_table_column(&t, shapes->name[k], shapes->head[k], MT_ALIGN_POINT);
     }
     return t;
 }

@@ -299,10 +299,11 @@ typedef struct slope_row {
 static const mt_field slope_fields[] = {
     MT_F_TEXT("parameter", parameter, "Its name."),
     MT_F_TEXT_OR_NULL("unit", unit, "SI unit of its value; null: none given."),
-    MT_F_NUMBER("value", value, "Its value in this configuration."),
+    MT_F_NUMBER("value", value,
+                "Its value in this configuration, in the unit that `unit` names."),
     MT_F_NUMBER_OR_NULL("hz_per_percent", hz_per_percent,
                         "Change of the frequency for one per cent more of it; null: it has no "
-                        "derivative [Hz]."),
+                        "derivative [Hz/%]."),
     MT_F_NUMBER_OR_NULL(
         "hz_per_unit", hz_per_unit,
         "Derivative of the frequency: Hz for one of its unit; null: it has none "

@@ -709,7 +709,8 @@ static const char *const output_units[] = {"m", "m/s", "m/s^2", "rad", "rad/s", 
 static const mt_field output_fields[] = {
     MT_F_TEXT("port", port, "As --output gives it."),
     MT_F_CHOICE("unit", unit, output_units, "Unit of its values."),
-    MT_F_NUMBERS("values", values, n, "Its value at each time.", MT_F_EVERY(step)),
+    MT_F_NUMBERS("values", values, n, "Its value at each time, in the unit that `unit` names.",
+                 MT_F_EVERY(step)),
 };
 static const mt_record output_record =
     MT_F_RECORD_OF(output_fields, "output", "A quantity over time.");

@@ -247,7 +247,10 @@ static const mt_field joint_fields[] = {
                 MT_F_WHEN(turns)),
     MT_F_NUMBER("coordinate_m", coordinate, "Its coordinate from the reference position.",
                 MT_F_WHEN(slides)),
-    MT_F_NUMBER("ratio", ratio, "Its motion per motion of the driven joint: the exact slope."),
+    MT_F_NUMBER(
+        "ratio", ratio,
+        "Its motion per motion of the driven joint, in rad or m per rad or m: the exact "
+        "slope."),
 };
 static const mt_record joint_record =
     MT_F_RECORD_OF(joint_fields, "joint", "A joint with a coordinate at a position.");
@@ -434,7 +437,10 @@ static void sweep_csv_columns(const sweep_view *v, mt_table *t)
             const mt_system_joint *const joint = &v->sys->joints[i];
             (void)mt_snprintf(s, sizeof s, "%s_%s", joint->name, drive_si_unit(joint->angle));
             mt_table_column(t, s, s, MT_ALIGN_POINT);
-            (void)mt_snprintf(s, sizeof s, "%s_ratio", joint->name);
+            (void)mt_snprintf(s, sizeof s, "%s_ratio%s", joint->name,
+                              joint->angle == driven(v)->angle ? ""
+                              : joint->angle                   ? "_rad_per_m"
+                                                               : "_m_per_rad");
             mt_table_column(t, s, s, MT_ALIGN_POINT);
         }
     }

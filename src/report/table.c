@@ -230,7 +230,7 @@ static mt_align align_of(const mt_field *f)
 /* What machines call a column. */
 static const char *member_of(const mt_record_column *c, const mt_field *f)
 {
-    return f->name != NULL ? f->name : c->member != NULL ? c->member : c->heading;
+    return c->member != NULL ? c->member : f->name != NULL ? f->name : c->heading;
 }
 
 void mt_table_record_columns(mt_table *t, const mt_record_table *of, unsigned in)

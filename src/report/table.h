@@ -76,7 +76,7 @@ enum { MT_IN_TEXT = 1, MT_IN_CSV = 2, MT_IN_TABLES = MT_IN_TEXT | MT_IN_CSV, MT_
 typedef struct mt_record_column {
     size_t offset;       /* of the member in its struct */
     const char *heading; /* for people, with its unit */
-    const char *member;  /* for machines, of what JSON does not have; NULL: the heading */
+    const char *member;  /* for machines, not as in JSON; NULL: as there, or the heading */
     int digits;          /* of numbers */
     bool with_sign;
     bool right;  /* at the right, numbers not by their points */

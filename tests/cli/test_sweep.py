@@ -83,7 +83,7 @@ class Sweep(CliTest):
         rows = list(csv.DictReader(io.StringIO(self.expect(3, *args, "--format", "csv").stdout)))
         self.assertEqual(len(rows), 21)
         self.assertEqual((rows[20]["position_m"], rows[20]["shaft_rad"]), ("0.10000000000000001", ""))
-        self.assertEqual(float(rows[3]["shaft_ratio"]),
+        self.assertEqual(float(rows[3]["shaft_ratio_rad_per_m"]),
                          next(j["ratio"] for j in points[3]["joints"] if j["name"] == "shaft"))
 
     def test_frequencies_locked_and_trimmed(self):
