@@ -136,7 +136,9 @@ typedef enum mt_answer_form {
     MT_ANSWER_CONFIGURATIONS,
     MT_ANSWER_LIST, /* the record of each in a list */
     /* mt_listed_record of each file in a list; with an operand the record, if there is one */
-    MT_ANSWER_FILES
+    MT_ANSWER_FILES,
+    /* the record; of a model configurations as above, whose members no record says */
+    MT_ANSWER_HELD
 } mt_answer_form;
 
 typedef struct mt_answer {

@@ -807,5 +807,6 @@ const mt_command mt_command_info = {
         "redundant joints. Where a number of the model depends on a sign, an axis or an "
         "order of bodies (preloads, free angles, moments, gear ratios, products of "
         "inertia, sections, bushings), it states how the number is understood.",
+    .answer = {&mt_held_file_record, MT_ANSWER_HELD},
     .run = run_info,
 };

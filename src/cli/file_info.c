@@ -76,12 +76,17 @@ enum { FOUND, CHANGED, NOT_FOUND, OWN };
 #define THIS held_item
 static const mt_field item_fields[] = {
     MT_F_TEXT("part", part, "What this is: a variable, a goal, a response."),
-    MT_F_TEXT_OR_NULL("name", name, "Its name, or the JSON pointer of a goal."),
+    MT_F_TEXT_OR_NULL(
+        "name", name,
+        "Its name, the JSON pointer of a goal, the source of a random part; null: none."),
     MT_F_NUMBER_OR_NULL("value", value,
-                        "Its number: of a variable the original value, of a goal the target."),
-    MT_F_NUMBER_OR_NULL("lower", lower, "Lower bound, or limit."),
-    MT_F_NUMBER_OR_NULL("upper", upper, "Upper bound, or limit."),
-    MT_F_TEXT_OR_NULL("unit", unit, "Unit of these three numbers, as the file shows them."),
+                        "Its number, in the unit that `unit` names: of a variable the original "
+                        "value, of a goal the target."),
+    MT_F_NUMBER_OR_NULL("lower", lower, "Lower bound, or limit, in the same unit."),
+    MT_F_NUMBER_OR_NULL("upper", upper, "Upper bound, or limit, in the same unit."),
+    MT_F_TEXT_OR_NULL(
+        "unit", unit,
+        "Unit of these three numbers, as the file shows them; null: they have none."),
     MT_F_NUMBER_OR_NULL("lower_hz", lower_hz, "Lowest frequency."),
     MT_F_NUMBER_OR_NULL("upper_hz", upper_hz, "Highest frequency."),
     MT_F_COUNT_OR_NULL("count", count, 0, "Number of its lines, values, modes or records."),
@@ -136,8 +141,8 @@ static const mt_field held_fields[] = {
     MT_F_LIST("refers_to", files, n_files, named_file, named_record, "Files that it names."),
     MT_F_TEXTS("doubts", warnings, n_warnings, "What is odd or not confirmed about it."),
 };
-static const mt_record held_record =
-    MT_F_RECORD_OF(held_fields, NULL, "What a file holds that does not describe a model.");
+const mt_record mt_held_file_record = MT_F_RECORD_OF(
+    held_fields, "held_file", "What a file holds that does not describe a model.");
 #undef THIS
 
 /* Another item, which is valid until the next one. */
@@ -1046,7 +1051,7 @@ static int write_held(const mt_args *args, const held_file *h, mt_text *out)
     switch (args->format) {
     case MT_FORMAT_JSON:
         mt_json_open(&w, NULL, '{');
-        mt_record_put(&w, &held_record, h);
+        mt_record_put(&w, &mt_held_file_record, h);
         mt_json_close(&w);
         return mt_cli_json_done(&w);
     case MT_FORMAT_CSV:

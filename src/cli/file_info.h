@@ -6,6 +6,10 @@
 
 #include "base/text.h"
 #include "cli/args.h"
+#include "result/record.h"
+
+/* What JSON has of a file that is no model. */
+extern const mt_record mt_held_file_record;
 
 /**
  * Append what the file of the first operand (or the result of a folder) holds, where that is no

@@ -410,6 +410,18 @@ static void add_field(mt_test *t, mt_text *out, const mt_field *f)
     mt_text_add(out, "}");
 }
 
+/* A configuration of a model that info prints: no record says its other members. */
+typedef struct named_configuration {
+    const char *name;
+} named_configuration;
+
+#define THIS named_configuration
+static const mt_field named_fields[] = {MT_F_TEXT("configuration", name, "Its name.")};
+static const mt_record named_record = MT_F_RECORD_OF(
+    named_fields, "configuration",
+    "A configuration of a model. It has many more members, which are not described here.");
+#undef THIS
+
 static void add_record(mt_test *t, mt_text *out, const mt_record *record)
 {
     const char *names[MT_MAX_KEYS] = {NULL};
@@ -421,7 +433,8 @@ static void add_record(mt_test *t, mt_text *out, const mt_record *record)
             names[n++] = record->fields[i].name;
         }
     }
-    mt_text_add(out, "\"type\": \"object\", \"additionalProperties\": false, ");
+    mt_text_addf(out, "\"type\": \"object\", %s",
+                 record == &named_record ? "" : "\"additionalProperties\": false, ");
     if (n > 0) {
         add_texts(out, "required", n, names);
         mt_text_add(out, ", ");
@@ -536,6 +549,17 @@ static void add_answer(mt_test *t, mt_text *out, const mt_command *command)
                      "{\"$ref\": \"#/definitions/%s\"}, {\"$ref\": \"#/definitions/%s\"}]",
                      command->name, record->name, mt_failed_record.name, record->name,
                      mt_failed_record.name);
+        break;
+    case MT_ANSWER_HELD:
+        REQUIRE(t, record->name != NULL);
+        found = (definitions){.n = 2, .items = {record, &named_record}};
+        mt_text_addf(out,
+                     "\"description\": \"What `modetune %s --format json` prints: what a file "
+                     "holds, or of a model a list of the configurations, or the one that -c "
+                     "names alone.\", \"anyOf\": [{\"$ref\": \"#/definitions/%s\"}, "
+                     "{\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/%s\"}}, "
+                     "{\"$ref\": \"#/definitions/%s\"}]",
+                     command->name, record->name, named_record.name, named_record.name);
         break;
     case MT_ANSWER_LIST:
     case MT_ANSWER_FILES:

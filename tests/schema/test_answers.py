@@ -73,6 +73,16 @@ LINES = {
         ["gevs_qualification", "--spectrum", "5:500:3"],
         ["shaken.json", "--spectrum", "17:18:1"],
     ],
+    "info": [
+        ["studies/stick.json"],
+        ["problems/profiles/helicopter_sine_on_random.json"],
+        ["problems/measurements/three_masses.csv"],
+        ["shaken.json"],
+        [f"{WRITTEN}/2026-11-25/inceptor_tuning_1.json"],
+        ["problems/stick.json"],
+        ["problems/stick.json", "-c", "free"],
+        ["about.json"],
+    ],
     "schema": [[]],
     "simulate": [
         ["tests/models/pendulum.json", "-c", "hanging", "--start", "pivot=0.5", "--duration", "8"],
@@ -132,6 +142,12 @@ ONE = {
 }
 FREE = {**{key: value for key, value in ONE.items() if key not in ("springs", "dampers")}}
 PROFILE = {"format": "modetune-profile/1", "random": {"psd_g2_per_hz": [[0.5, 0.001], [60, 0.02]]}, "tones": [{"frequency_hz": [1, 2], "acceleration_g": 0.1}]}
+
+# A study that says all of itself.
+ABOUT = {
+    "format": "modetune-study/1", "name": "about", "description": "All of it.", "author": "A. Person", "revision": "2", "date": "2026-11-28",
+    "model": "one.json", "variables": [{"parameter": "k", "lower": 100, "upper": 400}],
+}
 
 # Parallel cranks, the last with a length of its own: no length but the drawn one closes the joints.
 CRANKS = {
@@ -219,7 +235,7 @@ class Answers(unittest.TestCase):
             (cls.folder / name).symlink_to(SOURCE / name)
         for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS),
                             ("slider", SLIDER), ("shaken", SHAKEN), ("one", ONE), ("free", FREE), ("profile", PROFILE),
-                            ("along", {**PROFILE, "axis": "x"})):
+                            ("along", {**PROFILE, "axis": "x"}), ("about", ABOUT)):
             (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
         cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}
 

@@ -13,8 +13,8 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "Model", "Study", "Aircraft", "Profile", "Result", "Index", "Progress", "Scene",
-    "CommandCheck", "CommandDiff", "CommandExamples", "CommandMac", "CommandModes",
-    "CommandProfile", "CommandResponse", "CommandSchema", "CommandSensitivity",
+    "CommandCheck", "CommandDiff", "CommandExamples", "CommandInfo", "CommandMac",
+    "CommandModes", "CommandProfile", "CommandResponse", "CommandSchema", "CommandSensitivity",
     "CommandSimulate", "CommandSweep",
 ]
 
@@ -2176,6 +2176,57 @@ class CommandExamplesListed(TypedDict):
     text: str
 
 
+class CommandInfoHeldFile(TypedDict):
+    """What a file holds that does not describe a model."""
+
+    file: str
+    kind: str
+    format: str
+    bytes: int
+    sha256: str
+    name: Optional[str]
+    description: Optional[str]
+    author: Optional[str]
+    revision: Optional[str]
+    date: Optional[str]
+    source: Optional[str]
+    modetune: Optional[str]
+    commit: Optional[str]
+    status: Optional[str]
+    items: List["CommandInfoItem"]
+    refers_to: List["CommandInfoNamedFile"]
+    doubts: List[str]
+
+
+class CommandInfoConfiguration(TypedDict):
+    """A configuration of a model. It has many more members, which are not described here."""
+
+    configuration: str
+
+
+class CommandInfoItem(TypedDict):
+    """Something that the file holds."""
+
+    part: str
+    name: Optional[str]
+    value: Optional[float]
+    lower: Optional[float]
+    upper: Optional[float]
+    unit: Optional[str]
+    lower_hz: Optional[float]
+    upper_hz: Optional[float]
+    count: Optional[int]
+    text: Optional[str]
+
+
+class CommandInfoNamedFile(TypedDict):
+    """A file that this one names."""
+
+    what: str
+    file: str
+    state: Literal["found", "changed", "not found", "part of the program"]
+
+
 class CommandMacPair(TypedDict):
     """A mode of A and the mode of B that it is paired with."""
 
@@ -2758,6 +2809,9 @@ ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
 ProfileOrigin = Literal["published", "identified", "assumed"]
 CommandCheck = List["CommandCheckFile"]
 CommandExamples = List["CommandExamplesListed"]
+CommandInfo = Union[
+    "CommandInfoHeldFile", List["CommandInfoConfiguration"], "CommandInfoConfiguration"
+]
 CommandModes = Union[
     List[Union["CommandModesConfiguration", "CommandModesFailed"]], "CommandModesConfiguration",
     "CommandModesFailed"
