@@ -150,7 +150,8 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         break;
     case MT_FIELD_NUMBERS:
         put_numbers(w, f, mt_record_get_pointer(at), *(const int *)other,
-                    f->strided ? *(const int *)((const char *)item + f->step) : 1);
+                    f->strided ? *(const int *)(const void *)((const char *)item + f->step)
+                               : 1);
         break;
     case MT_FIELD_BY_VARIABLE:
         put_by_variable(w, f->name, mt_record_get_pointer(at), variables);
