@@ -57,6 +57,21 @@ mt_status mt_interpolant_init(mt_interpolant *curve, const char *name, int n, co
     return MT_OK;
 }
 
+/* x, or the end of the curve that it is but for rounding: 9*mm is a neighbour of 9 mm. */
+static double at_end(const mt_interpolant *curve, double x)
+{
+    static const double ROUNDED = 4.0 * DBL_EPSILON;
+    if (curve->n < 2) {
+        return x;
+    }
+    const double low = curve->x[0];
+    const double high = curve->x[curve->n - 1];
+    const double more = ROUNDED * fmax(fabs(low), fabs(high));
+    const bool is_low = x < low && x >= low - more;
+    const bool is_high = x > high && x <= high + more;
+    return is_low ? low : is_high ? high : x;
+}
+
 /* The piece that x is in; -1: none, as of a curve that could not be made. */
 static int piece_at(const mt_interpolant *curve, double x)
 {
@@ -95,8 +110,9 @@ static double cut(double v, mt_interval to)
     return fmin(fmax(v, to.lo), to.hi);
 }
 
-void mt_interpolant_at(const mt_interpolant *curve, double x, double out[3])
+void mt_interpolant_at(const mt_interpolant *curve, double where, double out[3])
 {
+    const double x = at_end(curve, where);
     const int k = piece_at(curve, x);
     if (k < 0) {
         out[0] = nan("");
@@ -159,9 +175,10 @@ static mt_interval slopes_within(const mt_interpolant *curve, int k, mt_interval
     return mt_interval_of(cut(slope.lo, kept), cut(slope.hi, kept));
 }
 
-void mt_interpolant_enclose(const mt_interpolant *curve, mt_interval a, mt_interval *values,
+void mt_interpolant_enclose(const mt_interpolant *curve, mt_interval of, mt_interval *values,
                             mt_interval *slopes)
 {
+    const mt_interval a = {at_end(curve, of.lo), at_end(curve, of.hi)};
     const int first = piece_at(curve, a.lo);
     const int last = piece_at(curve, a.hi);
     *values = mt_interval_of(-HUGE_VAL, HUGE_VAL);

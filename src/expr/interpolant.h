@@ -32,11 +32,12 @@ enum { MT_INTERPOLANT_MOST = 10000 };
  * a slope is not finite; MT_E_MEMORY. */
 mt_status mt_interpolant_init(mt_interpolant *curve, const char *name, int n, const double *x,
                               const double *y, mt_arena *mem, mt_err *err);
-/* Value, slope and second derivative at x; NaN outside of the points. O(log n). */
-void mt_interpolant_at(const mt_interpolant *curve, double x, double out[3]);
-/* Encloses all values, and all slopes, for x within a, exact and rounded (interval.h): the
- * whole line where a is not within the points. O(log n + points within a). */
-void mt_interpolant_enclose(const mt_interpolant *curve, mt_interval a, mt_interval *values,
+/* Value, slope and second derivative at x; NaN outside of the points, but for rounding of their
+ * ends. O(log n). */
+void mt_interpolant_at(const mt_interpolant *curve, double where, double out[3]);
+/* Encloses all values, and all slopes, for x within `of`, exact and rounded (interval.h): the
+ * whole line where it is not within the points. O(log n + points within it). */
+void mt_interpolant_enclose(const mt_interpolant *curve, mt_interval of, mt_interval *values,
                             mt_interval *slopes);
 
 #endif

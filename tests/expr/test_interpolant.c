@@ -118,6 +118,15 @@ static void interpolant__goes_through_its_points_and_not_beyond_them(mt_test *t)
         mt_interpolant_at(&c, 1.0 + (i * 1e-3), at);
         CHECK(t, at[0] == 4.0 && at[1] == 0.0);
     }
+    /* an end that is written another way: 9*mm is one rounding above 9/1000 */
+    static const double mm[] = {0, 2.0 / 1000.0, 9.0 / 1000.0};
+    mt_interpolant shop;
+    CHECK(t, 9.0 * 0.001 > mm[2]);
+    CHECK_INT(t, mt_interpolant_init(&shop, "shop", 3, mm, y, &mem, NULL), MT_OK);
+    mt_interpolant_at(&shop, 9.0 * 0.001, at);
+    CHECK_NEAR(t, at[0], 4.0, 0.0);
+    mt_interpolant_at(&shop, -1e-18, at);
+    CHECK(t, at[0] == 1.0);
     mt_interpolant_at(&c, -1e-12, at);
     CHECK(t, isnan(at[0]) && isnan(at[1]) && isnan(at[2]));
     mt_interpolant_at(&c, 5.0 + 1e-12, at);
