@@ -686,9 +686,20 @@ static bool are_alike(int n, const double *x, const double *y, double part)
     return alike;
 }
 
-/* A search from a design as near to the point's own best as this, of each value, ends there:
- * valleys of different optima lie farther apart. */
+/* A search from a design as near to the point's own best as this, of each value and of the
+ * range between its bounds, ends there: valleys of different optima lie farther apart. */
 static const double LEADS_BACK = 0.01;
+
+static bool leads_back(const trade *t, const double *x, const double *own)
+{
+    bool back = true;
+    for (int i = 0; i < t->study->n_variables && back; i++) {
+        const mt_variable *const v = &t->study->variables[i];
+        const double size = fmin(fabs(own[i]), v->upper - v->lower);
+        back = fabs(x[i] - own[i]) <= LEADS_BACK * size;
+    }
+    return back;
+}
 
 /* Best design of neighbour `way` of point k in the first pass; NULL where there is none, k was
  * searched from it, or it leads back to k's own. */
@@ -699,9 +710,7 @@ static const double *neighbour_design(const trade *t, int k, int way)
     const int begun = left >= 0 ? left : before_in_tile(t, k, 0);
     const double *const x = other < 0 || other == begun ? NULL : t->points[other].near;
     const double *const own = t->points[k].near;
-    const bool back =
-        x != NULL && own != NULL && are_alike(t->study->n_variables, x, own, LEADS_BACK);
-    return back ? NULL : x;
+    return x != NULL && own != NULL && leads_back(t, x, own) ? NULL : x;
 }
 
 /* True where a is the better answer of one point, by more than searches differ. Among feasible

@@ -52,6 +52,16 @@ class TradeTable(unittest.TestCase):
             self.assertEqual((Path(folder) / "again/study/report.html").read_text(encoding="utf-8"), self.page)
             return json.loads((out / "result.json").read_text())
 
+    def test_a_neighbour_in_another_valley_within_narrow_bounds(self):
+        """Bounds within 1 % of the value, and valleys of the objective within them: the point of looser bounds is at least as good as the
+        one of stricter bounds, from whose design it is searched."""
+        study = {"format": "modetune-study/1", "model": "model.json", "variables": [{"parameter": "k", "lower": K, "upper": 1.009 * K}],
+                 "search": {"starts": 2, "max_evaluations": 400}, "goals": [{"type": "frequency", "mode": 1, "at_least_hz": 0.01}],
+                 "objective": {"minimise": f"-cos(6000*k/{K}) - 100*k/{K}"},
+                 "trade": {"vary": [{"variable": "k", "bound": "lower", "values": [K, 1.0082 * K]}]}}
+        loose, strict = (p["best"]["objectives"][0]["recommended"] for p in self.answer(study)["trade"]["points"])
+        self.assertLessEqual(loose, strict + 1e-6)
+
     def test_an_objective_of_the_front_alone_is_shown(self):
         limits = [6e-4, 3e-4, 1e-4, 0.5e-4]
         vary = {"goal": 0, "member": "at_most", "values": limits}
