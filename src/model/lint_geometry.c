@@ -226,7 +226,7 @@ static void lint_hinge_axis(mt_lint *j, int i, const mt_link *l)
 {
     static const double NOT_PERPENDICULAR = 1e-6; /* cosine; as the mechanism is built */
     const mt_item item = {"link", "links", i, l->name.s};
-    double axis[AXES];
+    double axis[AXES] = {0.0};
     double from[AXES];
     double to[AXES];
     if (!l->has_hinge_axis || j->model->dimension == 2) {

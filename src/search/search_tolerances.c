@@ -430,7 +430,9 @@ static mt_status add_searched_designs(rounds *r, const mt_nlp_result *more, mt_e
 
 /* The first search ignores the cuts: with them there may be other designs, not connected to its
  * own, such as one on each side of the excluded range. So the search is repeated from a few of
- * its starts; from all where it has no design. *found: there are designs to verify. */
+ * its starts; from all where it has no design, or where it knew of no corner and found several:
+ * these are designs of the nominal question, and tolerances may prefer another. *found: there
+ * are designs to verify. */
 static mt_status start_again(rounds *r, bool *found, mt_err *err)
 {
     const mt_subproblem *const c = r->c;
@@ -441,7 +443,8 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
     *found = false;
     MT_TRY(hold_cuts(r, &held, err));
     held.search.max_evaluations = left_for(r, &held);
-    if (any_feasible(r)) {
+    const bool nominal = r->cuts.alone && r->c->cuts_known == NULL;
+    if (any_feasible(r) && !(nominal && r->out->n_solutions > 1)) {
         const int few = r->c->best_alone ? STARTS_ALONE : STARTS;
         held.search.starts = r->out->starts > 0 && r->out->starts < few ? r->out->starts : few;
     }
