@@ -676,30 +676,23 @@ static int neighbour(const trade *t, int k, int way)
     return at + step >= 0 && at + step < t->size[axis] ? k + (step * stride) : -1;
 }
 
-/* True where two designs differ by at most `part` of each value. */
-static bool are_alike(int n, const double *x, const double *y, double part)
+/* True where two designs differ by at most `part` of each value, and of the range between its
+ * bounds where variables are given. */
+static bool are_alike(int n, const mt_variable *of, const double *x, const double *y,
+                      double part)
 {
     bool alike = true;
     for (int i = 0; i < n && alike; i++) {
-        alike = fabs(x[i] - y[i]) <= part * fabs(y[i]);
+        const double size = fabs(y[i]);
+        const double range = of != NULL ? of[i].upper - of[i].lower : size;
+        alike = fabs(x[i] - y[i]) <= part * fmin(size, range);
     }
     return alike;
 }
 
-/* A search from a design as near to the point's own best as this, of each value and of the
- * range between its bounds, ends there: valleys of different optima lie farther apart. */
+/* A search from a design as near to the point's own best as this ends there: valleys of
+ * different optima lie farther apart. */
 static const double LEADS_BACK = 0.01;
-
-static bool leads_back(const trade *t, const double *x, const double *own)
-{
-    bool back = true;
-    for (int i = 0; i < t->study->n_variables && back; i++) {
-        const mt_variable *const v = &t->study->variables[i];
-        const double size = fmin(fabs(own[i]), v->upper - v->lower);
-        back = fabs(x[i] - own[i]) <= LEADS_BACK * size;
-    }
-    return back;
-}
 
 /* Best design of neighbour `way` of point k in the first pass; NULL where there is none, k was
  * searched from it, or it leads back to k's own. */
@@ -710,7 +703,10 @@ static const double *neighbour_design(const trade *t, int k, int way)
     const int begun = left >= 0 ? left : before_in_tile(t, k, 0);
     const double *const x = other < 0 || other == begun ? NULL : t->points[other].near;
     const double *const own = t->points[k].near;
-    return x != NULL && own != NULL && leads_back(t, x, own) ? NULL : x;
+    const mt_study *const s = t->study;
+    const bool back =
+        x != NULL && own != NULL && are_alike(s->n_variables, s->variables, x, own, LEADS_BACK);
+    return back ? NULL : x;
 }
 
 /* True where a is the better answer of one point, by more than searches differ. Among feasible
@@ -741,7 +737,7 @@ static bool is_tried(const point *p, int n, const double *const tried[WAYS], con
     static const double ROUNDING = 1e-10;
     bool found = false;
     for (int k = 0; k < n && !found; k++) {
-        found = tried[k] != NULL && are_alike(p->q->p->n, tried[k], x, ROUNDING);
+        found = tried[k] != NULL && are_alike(p->q->p->n, NULL, tried[k], x, ROUNDING);
     }
     return found;
 }

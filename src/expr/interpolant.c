@@ -181,12 +181,22 @@ void mt_interpolant_enclose(const mt_interpolant *curve, mt_interval of, mt_inte
     const mt_interval a = {at_end(curve, of.lo), at_end(curve, of.hi)};
     const int first = piece_at(curve, a.lo);
     const int last = piece_at(curve, a.hi);
-    *values = mt_interval_of(-HUGE_VAL, HUGE_VAL);
-    *slopes = *values;
+    mt_interval v = mt_interval_of(-HUGE_VAL, HUGE_VAL);
+    mt_interval s = v;
     for (int k = first; first >= 0 && k <= last; k++) {
-        const mt_interval v = values_within(curve, k, a);
-        const mt_interval s = slopes_within(curve, k, a);
-        *values = k == first ? v : mt_interval_hull(*values, v);
-        *slopes = k == first ? s : mt_interval_hull(*slopes, s);
+        if (values != NULL) {
+            const mt_interval part = values_within(curve, k, a);
+            v = k == first ? part : mt_interval_hull(v, part);
+        }
+        if (slopes != NULL) {
+            const mt_interval part = slopes_within(curve, k, a);
+            s = k == first ? part : mt_interval_hull(s, part);
+        }
+    }
+    if (values != NULL) {
+        *values = v;
+    }
+    if (slopes != NULL) {
+        *slopes = s;
     }
 }

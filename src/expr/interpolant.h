@@ -36,7 +36,8 @@ mt_status mt_interpolant_init(mt_interpolant *curve, const char *name, int n, co
  * ends. O(log n). */
 void mt_interpolant_at(const mt_interpolant *curve, double where, double out[3]);
 /* Encloses all values, and all slopes, for x within `of`, exact and rounded (interval.h): the
- * whole line where it is not within the points. O(log n + points within it). */
+ * whole line where it is not within the points. What is NULL is not asked for. O(log n + points
+ * within it). */
 void mt_interpolant_enclose(const mt_interpolant *curve, mt_interval of, mt_interval *values,
                             mt_interval *slopes);
 

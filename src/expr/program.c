@@ -101,7 +101,8 @@ static bool is_value(const mt_program *p, mt_node node, double value)
     return p->nodes[node].op == MT_OP_CONST && p->nodes[node].value == value;
 }
 
-double mt_program_operate(const mt_program_node *n, double a, double b)
+/* Value of an operation with operands of these values (b is ignored where it has one). */
+static double operate(const mt_program_node *n, double a, double b)
 {
     if (n->op == MT_OP_INTERP) {
         double at[3];
@@ -117,7 +118,7 @@ static mt_node operation(mt_program *p, const mt_program_node *n)
     const mt_program_node *const na = &p->nodes[n->a];
     const mt_program_node *const nb = n->b == MT_NO_NODE ? na : &p->nodes[n->b];
     if (na->op == MT_OP_CONST && nb->op == MT_OP_CONST) {
-        const double value = mt_program_operate(n, na->value, nb->value);
+        const double value = operate(n, na->value, nb->value);
         if (isfinite(value)) {
             return mt_program_const(p, value);
         }
@@ -338,7 +339,8 @@ void mt_program_include_inputs(const mt_program *p, mt_node node, uint64_t *set)
  * does not exist with respect to a constant operand does no harm.
  */
 
-static double node_value(const mt_program_node *n, const double *inputs, const double *value)
+double mt_program_node_value(const mt_program_node *n, const double *inputs,
+                             const double *value)
 {
     if (n->op == MT_OP_CONST) {
         return n->value;
@@ -346,7 +348,7 @@ static double node_value(const mt_program_node *n, const double *inputs, const d
     if (n->op == MT_OP_PARAM) {
         return inputs[n->input];
     }
-    return mt_program_operate(n, value[n->a], n->b == MT_NO_NODE ? 0.0 : value[n->b]);
+    return operate(n, value[n->a], n->b == MT_NO_NODE ? 0.0 : value[n->b]);
 }
 
 /* Partial derivatives of an operation at (a, b), where its value is v. */
@@ -393,7 +395,7 @@ mt_status mt_program_eval(const mt_program *p, const double *inputs, double *val
                           mt_node *bad, mt_err *err)
 {
     for (int i = 0; i < p->count; i++) {
-        value[i] = node_value(&p->nodes[i], inputs, value);
+        value[i] = mt_program_node_value(&p->nodes[i], inputs, value);
         if (!isfinite(value[i])) {
             return fail_at(p, i, value, "value", bad, err);
         }
@@ -408,7 +410,7 @@ bool mt_program_values(const mt_program *p, const double *inputs, double *value)
         const mt_program_node *const n = &p->nodes[i];
         const bool known = (n->a == MT_NO_NODE || isfinite(value[n->a])) &&
                            (n->b == MT_NO_NODE || isfinite(value[n->b]));
-        const double v = known ? node_value(n, inputs, value) : nan("");
+        const double v = known ? mt_program_node_value(n, inputs, value) : nan("");
         value[i] = isfinite(v) ? v : nan("");
         whole = whole && isfinite(v);
     }
@@ -475,7 +477,7 @@ mt_status mt_program_again(const mt_program *p, const double *inputs, double *va
 {
     for (int k = 0; k < p->n_active; k++) {
         const int i = p->active_nodes[k];
-        value[i] = node_value(&p->nodes[i], inputs, value);
+        value[i] = mt_program_node_value(&p->nodes[i], inputs, value);
         if (!isfinite(value[i])) {
             return fail_at(p, i, value, "value", bad, err);
         }
@@ -506,8 +508,7 @@ static mt_interval node_interval(const mt_program *p, int i, const double *lower
     }
     if (n->op == MT_OP_INTERP) {
         mt_interval values;
-        mt_interval slopes;
-        mt_interpolant_enclose(n->curve, a, &values, &slopes);
+        mt_interpolant_enclose(n->curve, a, &values, NULL);
         return values;
     }
     const mt_interval b = n->b == MT_NO_NODE ? a : (mt_interval){lo[n->b], hi[n->b]};
@@ -547,9 +548,8 @@ static mt_interval_partials interval_partials(const mt_program_node *n, mt_inter
                                               mt_interval b, mt_interval v)
 {
     if (n->op == MT_OP_INTERP) {
-        mt_interval values;
         mt_interval_partials d = {.b = {0.0, 0.0}};
-        mt_interpolant_enclose(n->curve, a, &values, &d.a);
+        mt_interpolant_enclose(n->curve, a, NULL, &d.a);
         return d;
     }
     return mt_interval_op_partials(n->op, a, b, v);
@@ -698,7 +698,7 @@ static double times(double slope, double by)
 static void node_second(const mt_program_node *n, const double *a, const double *b,
                         double out[3])
 {
-    const double v = mt_program_operate(n, a[0], b[0]);
+    const double v = operate(n, a[0], b[0]);
     const mt_partials d = node_partials(n, a[0], b[0], v);
     const curvatures c = curvatures_of(n, a[0], b[0], v);
     out[0] = v;

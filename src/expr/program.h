@@ -73,8 +73,9 @@ mt_node mt_program_div(mt_program *p, mt_node a, mt_node b);
 /* Finish the program. Fails MT_E_MEMORY. */
 mt_status mt_program_finish(mt_program *p, mt_err *err);
 
-/* Value of an operation with operands of these values (b is ignored where it has one). */
-double mt_program_operate(const mt_program_node *n, double a, double b);
+/* Value of a node at inputs, from those of the nodes before it. */
+double mt_program_node_value(const mt_program_node *n, const double *inputs,
+                             const double *value);
 /* True where the node depends on no input. Only after finish. */
 bool mt_program_is_constant(const mt_program *p, mt_node node);
 /* depends[i]: the node depends on input i (structurally); [n_inputs]. */

@@ -55,19 +55,12 @@ typedef struct known {
 static const double *values_so_far(const mt_program *p, known *k)
 {
     for (; k->count < p->count; k->count++) {
-        const mt_program_node *const n = &p->nodes[k->count];
         double *const v = mt_arena_grow(&k->mem, k->value, k->count, &k->capacity, sizeof *v);
         if (v == NULL) {
             return NULL;
         }
         k->value = v;
-        if (n->op == MT_OP_CONST) {
-            v[k->count] = n->value;
-        } else if (n->op == MT_OP_PARAM) {
-            v[k->count] = k->at[n->input];
-        } else {
-            v[k->count] = mt_program_operate(n, v[n->a], n->b == MT_NO_NODE ? 0.0 : v[n->b]);
-        }
+        v[k->count] = mt_program_node_value(&p->nodes[k->count], k->at, v);
     }
     return k->value;
 }

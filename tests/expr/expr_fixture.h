@@ -4,12 +4,29 @@
 #ifndef EXPR_FIXTURE_H
 #define EXPR_FIXTURE_H
 
+#include <stdint.h>
 #include <string.h>
 
 #include "expr/program.h"
 
 enum { N_PARAMS = 4 };
 static const char *const param_names[N_PARAMS] = {"x", "y", "z", "k_1"};
+
+/* splitmix64: the same numbers everywhere */
+static inline uint64_t next(uint64_t *state)
+{
+    *state += UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t z = *state;
+    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31);
+}
+
+/* uniform in [0, 1) */
+static inline double uniform(uint64_t *state)
+{
+    return (double)(next(state) >> 11) * 0x1p-53;
+}
 
 static inline int find_param(const void *context, const char *name, size_t length)
 {

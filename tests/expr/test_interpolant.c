@@ -12,16 +12,6 @@
 
 enum { POINTS = 9 };
 
-/* splitmix64: the same numbers everywhere */
-static double uniform(uint64_t *state)
-{
-    *state += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t z = *state;
-    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 typedef struct points {
     double x[POINTS];
     double y[POINTS];

@@ -9,22 +9,6 @@
 #include "expr_fixture.h"
 #include "mt_test.h"
 
-/* splitmix64: the same numbers everywhere */
-static uint64_t next(uint64_t *state)
-{
-    *state += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t z = *state;
-    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return z ^ (z >> 31);
-}
-
-/* uniform in [0, 1) */
-static double uniform(uint64_t *state)
-{
-    return (double)(next(state) >> 11) * 0x1p-53;
-}
-
 static int below(uint64_t *state, int n)
 {
     return (int)(next(state) % (uint64_t)n);
