@@ -6,9 +6,9 @@
 #include "modetune/export.h"
 
 #define MT_VERSION_MAJOR  1
-#define MT_VERSION_MINOR  0
+#define MT_VERSION_MINOR  1
 #define MT_VERSION_PATCH  0
-#define MT_VERSION_STRING "1.0.0"
+#define MT_VERSION_STRING "1.1.0"
 
 #ifdef __cplusplus
 extern "C" {
