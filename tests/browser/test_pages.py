@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All tests of pages, one after the other in one browser; each module runs by itself, too."""
+"""Tests of reports' pages, one after the other in one browser (those of mechanisms: test_mechanism_pages); each module runs by itself, too."""
 import unittest
 
-MODULES = ["test_pictures", "test_report", "test_show", "test_odd", "test_view"]  # pictures before a hand has been anywhere
+MODULES = ["test_pictures", "test_report"]  # pictures before a hand has been anywhere
 
 
 def load_tests(loader, _tests, _pattern):

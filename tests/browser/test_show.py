@@ -123,7 +123,7 @@ class Show(Answers):
         self.assertGreaterEqual(len(self.pages), len(self.models) + (len(STUDIES) if EVERY else 0))
         for turn, (path, designs) in enumerate(self.pages.items()):
             with self.subTest(page=path.stem):
-                self.page(path, designs, [WINDOWS[(turn + 2 * k) % len(WINDOWS)] for k in range(3 if EVERY else 1)])
+                self.page(path, designs, [WINDOWS[(turn + 2 * k) % len(WINDOWS)] for k in range(2 if EVERY else 1)])
 
     def test_paper_and_a_wrong_number(self):
         """It is printed, and a number that is not the model's is found."""
