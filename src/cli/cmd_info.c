@@ -516,7 +516,7 @@ static mt_status json_redundant(mt_json_writer *w, view *v, mt_err *err)
 {
     int n = 0;
     mt_joints_row *rows = NULL;
-    MT_TRY(mt_cli_redundant(v->a->lin, &v->mem, &n, &rows, err));
+    MT_TRY(mt_redundant_rows(v->a->lin, &v->mem, &n, &rows, err));
     mt_json_open(w, "redundant_constraints", '[');
     for (int k = 0; k < n; k++) {
         mt_record_put_object(w, NULL, &mt_joints_record, &rows[k], 0, NULL);
@@ -556,7 +556,7 @@ static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
     json_damping(w, v);
     cli_json_conventions(w, &v->conventions);
     mt_record_put_object(w, "dead_centre", &mt_dead_centre_record,
-                         mt_cli_dead_centre(&v->nearness, &v->mem), 0, NULL);
+                         mt_dead_centre_row_of(&v->nearness, &v->mem), 0, NULL);
     mt_json_close(w);
     return mt_arena_check(&v->mem, err);
 }

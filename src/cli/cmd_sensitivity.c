@@ -381,7 +381,7 @@ typedef struct configuration_row {
 #define THIS configuration_row
 static const mt_field configuration_fields[] = {
     MT_F_TEXT("configuration", configuration, "Its name."),
-    MT_F_ENUM("method", method, mt_lowest_method, mt_cli_methods,
+    MT_F_ENUM("method", method, mt_lowest_method, mt_lowest_method_names,
               "\"dense\": by all modes; \"tree\", \"sparse\": by the lowest ones of a large "
               "mechanism."),
     MT_F_LIST("modes", modes, n_modes, mode_row, mode_record,

@@ -2,33 +2,12 @@
 #ifndef CLI_LOADED_MODEL_H
 #define CLI_LOADED_MODEL_H
 
-#include "analysis/analysis.h"
-#include "analysis/lowest.h"
 #include "base/text.h"
 #include "cli/args.h"
+#include "inspect/loaded_model.h"
 #include "io/file.h"
 #include "io/write_json.h"
-#include "mechanics/linear.h"
-#include "mechanics/singular.h"
-#include "model/model.h"
 #include "result/result.h"
-
-/* A model with the parameters of --set, and the configurations to analyse. */
-typedef struct mt_loaded_model {
-    mt_model *model;   /* owned */
-    const mt_run *run; /* the run of analyses of the model (base/run.h); NULL: none */
-    mt_arena mem;
-    const char *path;
-    int n_inputs;
-    int *inputs;      /* parameters */
-    double *at;       /* their values */
-    double *original; /* [n_parameters] values in the file */
-    /* [n_parameters] with --set and dependent parameters updated; before overrides of
-     * configurations */
-    double *values;
-    int n_configurations;
-    int *configurations;
-} mt_loaded_model;
 
 /**
  * Load the model, apply --set, choose configurations: the named one, or all where the name is
@@ -37,40 +16,6 @@ typedef struct mt_loaded_model {
  */
 int mt_loaded_model_load(const mt_args *args, const char *path, const char *configuration,
                          mt_loaded_model *out);
-void mt_loaded_model_free(mt_loaded_model *s);
-/* A number of an option: a plain number in this unit (NULL: SI), or an expression of the
- * model's values, in SI. Fails: MT_E_USAGE, naming the option, MT_E_MEMORY. */
-mt_status mt_loaded_model_number(mt_loaded_model *s, const char *option, const mt_unit *unit,
-                                 const char *text, size_t length, double *out, mt_err *err);
-/* The unit of numbers for the joint (or link's hinge) of this name: the model's unit of angles
- * or displacements, whichever the joint has. */
-const mt_unit *mt_loaded_model_joint_unit(const mt_model *model, const char *name);
-/* The parameters "A,B" of an option, or where list is NULL all that are not expressions of
- * others: *n of them in mem. Fails: MT_E_USAGE, MT_E_INPUT (there are none), MT_E_MEMORY. */
-mt_status mt_loaded_model_parameters(const mt_loaded_model *s, const char *option,
-                                     const char *list, mt_arena *mem, int *n, int **out,
-                                     mt_err *err);
-/* Analyse configuration c for its `first` lowest vibration modes (0: all). Failures are
- * reported in err only. */
-mt_status mt_loaded_model_analyse(const mt_loaded_model *s, int c, int first, mt_analysis **out,
-                                  mt_err *err);
-/* The lowest modes of configuration c at the given inputs, where only these are requested
- * (want.count > 0, at most half of all modes) and there is a fast method for a model of its
- * size. *out NULL: there is none, and all modes are needed; where these are too many,
- * MT_E_USAGE gives the reason. */
-mt_status mt_loaded_model_lowest(const mt_loaded_model *s, int c, int n_inputs,
-                                 const int *inputs, const double *at, mt_lowest_want want,
-                                 mt_lowest **out, mt_err *err);
-/* Names of the methods in JSON: "dense", "tree", "sparse". */
-enum { MT_CLI_METHODS = MT_LOWEST_SPARSE + 1 };
-extern const char *const mt_cli_methods[MT_CLI_METHODS];
-/* The definition of configuration c with these inputs, in the run of the model. */
-mt_system_def mt_loaded_model_system(const mt_loaded_model *s, int c, int n_inputs,
-                                     const int *inputs, const double *at);
-/* Fails with MT_E_USAGE where configuration c is too large for dense matrices; the text begins
- * with `why`, the reason for no other method. */
-mt_status mt_loaded_model_admit_dense(const mt_loaded_model *s, int c, const char *why,
-                                      mt_err *err);
 /* Warn where overrides of the configuration take precedence over --set. */
 void mt_loaded_model_warn_overridden(const mt_loaded_model *s, int c);
 /* Append a note about each simplification of links of configuration c, after an answer in
@@ -80,47 +25,21 @@ void mt_loaded_model_note_links(const mt_loaded_model *s, int c, mt_text *out);
  * dropped: only one joint is driven. */
 void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *option,
                                   const char *joint);
-const char *mt_loaded_model_configuration(const mt_loaded_model *s, int c);
-
-/* The model's name of vibration mode `index` of configuration c; NULL: none. Valid at the
- * original design only. */
-const char *mt_mode_name(const mt_loaded_model *s, int c, int index);
-
-/* A configuration without an answer in a list of answers, with the reason: mt_failed_record. */
-extern const mt_record mt_failed_record;
+/* Write the record of a configuration without an answer. */
 void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err);
+/* Close a JSON output. Returns MT_EXIT_DONE, or reports a failure and returns its exit
+ * status. */
+int mt_cli_json_done(mt_json_writer *w);
+/* Shows one configuration; *code gets worse where there is more to tell than its failure. */
+typedef mt_status (*mt_cli_show)(void *context, mt_loaded_model *s, int c, int *code,
+                                 mt_err *err);
+/* Shows each configuration with the warnings that all commands have; the failure of one does
+ * not hide the others. In JSON a list of what they write to w, without -c. Returns the exit
+ * status. */
+int mt_cli_each(const mt_args *args, mt_loaded_model *s, mt_json_writer *w, mt_cli_show show,
+                void *context);
 /* Warnings and notes of a configuration, one line each, before its table. */
 void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out);
-/* Names of joints as a list, for lists of such lists. */
-typedef struct mt_joints_row {
-    const char **name;
-    int n;
-} mt_joints_row;
-extern const mt_record mt_joints_record;
-/* In mem, which remembers a shortage. */
-static inline mt_joints_row mt_joints_row_of(const mt_joint_names *joints, mt_arena *mem)
-{
-    mt_joints_row row = {.name = mt_arena_alloc(mem, (size_t)joints->n, sizeof *row.name)};
-    for (; row.name != NULL && row.n < joints->n; row.n++) {
-        row.name[row.n] = joints->name[row.n];
-    }
-    return row;
-}
-
-/* Sets of joints whose equations depend on each other: *n of them, *out not NULL, in mem. */
-mt_status mt_cli_redundant(mt_linear *lin, mt_arena *mem, int *n, mt_joints_row **out,
-                           mt_err *err);
-/* A dead centre near a position. */
-typedef struct mt_dead_centre_row {
-    double distance;
-    double independence;
-    int n_joints;
-    const char **joints;
-} mt_dead_centre_row;
-extern const mt_record mt_dead_centre_record;
-/* NULL: none is near. In mem, which remembers a shortage. */
-mt_dead_centre_row *mt_cli_dead_centre(const mt_nearness *nearness, mt_arena *mem);
-
 /* The model of a result, the first operand: the file of --model, else a file found that holds
  * exactly the bytes that were solved. file: mt_file_free; path: heap. Fails: MT_E_INPUT (not
  * found), MT_E_SYSTEM, MT_E_MEMORY. */

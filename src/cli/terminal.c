@@ -330,18 +330,6 @@ void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err 
     mt_diagnostics_add(messages, MT_SEVERITY_ERROR, &place, err->text);
 }
 
-int mt_cli_json_done(mt_json_writer *w)
-{
-    if (mt_json_done(w)) {
-        return MT_EXIT_DONE;
-    }
-    if (!w->misused) {
-        return MT_EXIT_SYSTEM; /* mt_terminal_put tells */
-    }
-    mt_terminal_error("the output cannot be written as JSON");
-    return MT_EXIT_NUMERICAL;
-}
-
 /* True where standard error is a terminal. */
 static bool terminal_is_watched(void)
 {

@@ -64,10 +64,6 @@ void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err 
 /* Report err and return the exit status of rc. */
 int mt_cli_failed(mt_status rc, const mt_err *err);
 
-/* Close a JSON output. Returns MT_EXIT_DONE, or reports a failure and returns its exit
- * status. */
-int mt_cli_json_done(mt_json_writer *w);
-
 /* Columns of the terminal of standard output; 0: not a terminal, or unknown. */
 int mt_terminal_width(void);
 /* Write lines to standard error unchanged. */

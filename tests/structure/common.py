@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
 ROOMS = ("base", "linalg", "expr", "io", "model", "environment", "measurement", "mechanics", "tree", "modal", "analysis", "response", "nlp",
-         "study", "vibration", "result", "prove", "scene", "simulate", "problem", "search", "describe", "answer", "library", "report", "cli")
+         "study", "vibration", "result", "prove", "scene", "simulate", "problem", "search", "describe", "answer", "inspect", "library", "report", "cli")
 
 _TOKENS = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.S)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from common import ROOT, c_files, code_only, verdict
 
 # rooms that hold it
-ROOMS_HELD = ("base", "expr", "model", "linalg", "mechanics", "tree", "modal", "analysis", "response", "scene", "simulate", "nlp", "result", "prove", "study", "environment", "measurement", "vibration", "describe", "problem", "search", "answer",
+ROOMS_HELD = ("base", "expr", "model", "linalg", "mechanics", "tree", "modal", "analysis", "response", "scene", "simulate", "nlp", "result", "prove", "study", "environment", "measurement", "vibration", "describe", "problem", "search", "answer", "inspect",
               "report", "io")
 FUNCTION = re.compile(r"^(?!static\b|typedef\b|#|return\b)[A-Za-z_][\w \t*]*?\b(mt_\w+)\(", re.M)
 
