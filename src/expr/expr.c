@@ -37,6 +37,7 @@
     X("tanh", MT_OP_TANH)     \
     X("abs", MT_OP_ABS)       \
     X("interp", MT_OP_INTERP) \
+    X("if", MT_OP_IF)         \
     X("atan2", MT_OP_ATAN2)   \
     X("min", MT_OP_MIN)       \
     X("max", MT_OP_MAX)       \
@@ -194,13 +195,23 @@ static bool find_meant(const char *number, size_t n_number, const char *word, si
     return false;
 }
 
+/* What an operation can take: a number or a condition. */
+typedef struct operand {
+    bool condition;
+    size_t from; /* where its text begins */
+} operand;
+
 typedef struct parser {
     const char *text;
     size_t at;         /* next byte */
     size_t number;     /* of the last number */
     size_t number_end; /* 0: none yet */
     int depth;
-    int length; /* of code */
+    bool conditional; /* within the condition of an if() */
+    size_t atom;      /* where the last number, name or parenthesis begins */
+    int length;       /* of code */
+    int n_operands;   /* what the code so far leaves on its stack */
+    operand operands[MT_EXPR_MAX_CODE];
     const mt_expr_scope *scope;
     mt_err *err;
     mt_code code[MT_EXPR_MAX_CODE];
@@ -275,6 +286,42 @@ static mt_status expected(parser *p, const char *what)
                    shown_length(n), from, what);
 }
 
+static bool takes_conditions(mt_op op)
+{
+    return op == MT_OP_AND || op == MT_OP_OR || op == MT_OP_NOT || op == MT_OP_IF;
+}
+
+static bool gives_condition(mt_op op)
+{
+    return op == MT_OP_NOT || (op >= MT_OP_LESS && op <= MT_OP_OR);
+}
+
+/* Puts an operation's result in the place of its operands, which are what it takes. */
+static mt_status operate(parser *p, mt_op op)
+{
+    const int n = mt_op_operands(op);
+    const int first = p->n_operands - n;
+    for (int i = first; i < p->n_operands; i++) {
+        const operand *const a = &p->operands[i];
+        const bool wanted = takes_conditions(op) || (op == MT_OP_THEN && i == first);
+        if (a->condition && !wanted) {
+            return mt_fail(p->err, MT_E_INPUT,
+                           "at character %d: a condition where a number is expected",
+                           character(p, a->from));
+        }
+        if (!a->condition && wanted) {
+            return mt_fail(p->err, MT_E_INPUT,
+                           "at character %d: a number where a condition is expected, such as "
+                           "\"a > 0\"",
+                           character(p, a->from));
+        }
+    }
+    p->operands[first] = (operand){.condition = gives_condition(op) || op == MT_OP_IF,
+                                   .from = n == 0 ? p->atom : p->operands[first].from};
+    p->n_operands = first + 1;
+    return MT_OK;
+}
+
 static mt_status emit(parser *p, mt_op op, int param, double value)
 {
     if (p->length == MT_EXPR_MAX_CODE) {
@@ -283,7 +330,7 @@ static mt_status emit(parser *p, mt_op op, int param, double value)
                        character(p, p->at), (int)MT_EXPR_MAX_CODE);
     }
     p->code[p->length++] = (mt_code){.op = op, .param = param, .value = value};
-    return MT_OK;
+    return operate(p, op);
 }
 
 static mt_status emit_op(parser *p, mt_op op)
@@ -403,33 +450,157 @@ static mt_status parse_curve(parser *p, const mt_interpolant **out)
 static mt_status parse_interp(parser *p)
 {
     const mt_interpolant *curve = NULL;
+    const bool outside = p->conditional;
     const size_t open = p->at++;
     MT_TRY(parse_curve(p, &curve));
+    p->conditional = false;
     MT_TRY(deeper(p, parse_sum));
+    p->conditional = outside;
     MT_TRY(parse_close(p, open));
     MT_TRY(emit_op(p, MT_OP_INTERP));
     p->code[p->length - 1].curve = curve;
     return MT_OK;
 }
 
-/* The arguments of a function whose name begins at `from`; p is at the "(". */
-static mt_status parse_call(parser *p, size_t from, size_t length)
+/* Conditions */
+
+/* The operator of a comparison at p->at, with its length; MT_OP_CONST: there is none. */
+static mt_op comparison_at(parser *p, size_t *length)
 {
-    mt_op op = MT_OP_CONST;
-    if (!find_function(p->text + from, length, &op)) {
-        return unknown_name(p, from, length, true);
+    const char c = peek(p);
+    const bool equals = c != '\0' && p->text[p->at + 1] == '=';
+    *length = equals ? 2 : 1;
+    if (c == '<') {
+        return equals ? MT_OP_AT_MOST : MT_OP_LESS;
     }
-    if (op == MT_OP_INTERP) {
-        return parse_interp(p);
+    if (c == '>') {
+        return equals ? MT_OP_AT_LEAST : MT_OP_GREATER;
     }
+    return c == '=' && equals ? MT_OP_EQUAL : MT_OP_CONST;
+}
+
+/* True where the next word is this one, which is passed. */
+static bool pass_word(parser *p, const char *word)
+{
+    const size_t length = strlen(word);
+    (void)peek(p);
+    if (strncmp(p->text + p->at, word, length) != 0 || is_name_part(p->text[p->at + length])) {
+        return false;
+    }
+    p->at += length;
+    return true;
+}
+
+static mt_status parse_comparison(parser *p)
+{
+    size_t length = 0;
+    MT_TRY(parse_sum(p));
+    const mt_op op = comparison_at(p, &length);
+    if (op == MT_OP_CONST) {
+        return MT_OK;
+    }
+    p->at += length;
+    MT_TRY(parse_sum(p));
+    MT_TRY(emit_op(p, op));
+    if (comparison_at(p, &length) != MT_OP_CONST) {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: a second comparison; write \"a < b and b < c\"",
+                       character(p, p->at));
+    }
+    return MT_OK;
+}
+
+static mt_status parse_factor(parser *p)
+{
+    if (!pass_word(p, "not")) {
+        return parse_comparison(p);
+    }
+    MT_TRY(deeper(p, parse_factor));
+    return emit_op(p, MT_OP_NOT);
+}
+
+static mt_status parse_term(parser *p)
+{
+    MT_TRY(parse_factor(p));
+    while (pass_word(p, "and")) {
+        MT_TRY(parse_factor(p));
+        MT_TRY(emit_op(p, MT_OP_AND));
+    }
+    return MT_OK;
+}
+
+static mt_status parse_condition(parser *p)
+{
+    MT_TRY(parse_term(p));
+    while (pass_word(p, "or")) {
+        MT_TRY(parse_term(p));
+        MT_TRY(emit_op(p, MT_OP_OR));
+    }
+    return MT_OK;
+}
+
+/* Error for what follows a condition in place of its comma. */
+static mt_status no_comma(parser *p)
+{
+    static const char *const meant[][2] = {{"&", "and"},           {"|", "or"},
+                                           {"!=", "not a == b"},   {"=", "=="},
+                                           {"\xE2\x89\xA4", "<="}, {"\xE2\x89\xA5", ">="}};
+    for (int i = 0; i < MT_COUNT(meant); i++) {
+        if (strncmp(p->text + p->at, meant[i][0], strlen(meant[i][0])) == 0) {
+            return mt_fail(p->err, MT_E_INPUT,
+                           "at character %d: \"%s\" is not part of a condition; did you mean "
+                           "\"%s\"?",
+                           character(p, p->at), meant[i][0], meant[i][1]);
+        }
+    }
+    return expected(p, "\",\" behind the condition of if(condition, a, b)");
+}
+
+/* if(condition, a, b); p is at the "(". */
+static mt_status parse_if(parser *p)
+{
+    const bool outside = p->conditional;
     const size_t open = p->at++;
+    p->conditional = true;
+    MT_TRY(deeper(p, parse_condition));
+    p->conditional = false;
+    if (peek(p) != ',') {
+        return no_comma(p);
+    }
+    p->at++;
+    MT_TRY(emit_op(p, MT_OP_IF));
+    const int condition = p->length - 1;
+    MT_TRY(deeper(p, parse_sum));
+    if (peek(p) != ',') {
+        return expected(p,
+                        "\",\" and what if(condition, a, b) is where the condition is false");
+    }
+    p->at++;
+    MT_TRY(emit_op(p, MT_OP_THEN));
+    const int then = p->length - 1;
+    MT_TRY(deeper(p, parse_sum));
+    MT_TRY(parse_close(p, open));
+    MT_TRY(emit_op(p, MT_OP_ELSE));
+    p->code[condition].param = then - condition;
+    p->code[then].param = p->length - 1 - then;
+    p->conditional = outside;
+    return MT_OK;
+}
+
+/* The arguments of a function whose name begins at `from`; p is at the "(". */
+static mt_status parse_arguments(parser *p, size_t from, size_t length, mt_op op)
+{
+    const bool outside = p->conditional;
+    const size_t open = p->at++;
+    const int operands = mt_op_operands(op);
     int count = 0;
+    p->conditional = false;
     for (bool more = true; more; count++) {
         MT_TRY(deeper(p, parse_sum));
         more = peek(p) == ',';
         p->at += more;
     }
-    const int operands = mt_op_operands(op);
+    p->conditional = outside;
     if (count != operands) {
         return mt_fail(p->err, MT_E_INPUT,
                        "at character %d: function \"%.*s\" takes %d argument%s, not %d",
@@ -438,6 +609,19 @@ static mt_status parse_call(parser *p, size_t from, size_t length)
     }
     MT_TRY(parse_close(p, open));
     return emit_op(p, op);
+}
+
+/* A function whose name begins at `from`; p is at the "(". */
+static mt_status parse_call(parser *p, size_t from, size_t length)
+{
+    mt_op op = MT_OP_CONST;
+    if (!find_function(p->text + from, length, &op)) {
+        return unknown_name(p, from, length, true);
+    }
+    if (op == MT_OP_IF) {
+        return parse_if(p);
+    }
+    return op == MT_OP_INTERP ? parse_interp(p) : parse_arguments(p, from, length, op);
 }
 
 /* A unit that multiplies nothing. */
@@ -594,6 +778,7 @@ static mt_status parse_number(parser *p)
 static mt_status parse_atom(parser *p)
 {
     const char c = peek(p);
+    p->atom = p->at;
     if (is_digit(c) || c == '.') {
         return parse_number(p);
     }
@@ -602,7 +787,7 @@ static mt_status parse_atom(parser *p)
     }
     if (c == '(') {
         const size_t open = p->at++;
-        MT_TRY(deeper(p, parse_sum));
+        MT_TRY(deeper(p, p->conditional ? parse_condition : parse_sum));
         return parse_close(p, open);
     }
     return expected(p, "a number, a name or \"(\"");
@@ -705,7 +890,11 @@ static mt_status left_over(parser *p)
             character(p, p->at), shown_length(length), left, (int)digits, number,
             shown_length(length), left);
     }
-    return expected(p, "an operator or the end");
+    size_t compared = 0;
+    return expected(p, comparison_at(p, &compared) == MT_OP_CONST
+                           ? "an operator or the end"
+                           : "an operator or the end (comparisons stand in the condition of "
+                             "if(condition, a, b))");
 }
 
 mt_status mt_expr_parse(const char *text, const mt_expr_scope *scope, mt_arena *mem,
@@ -722,7 +911,10 @@ mt_status mt_expr_parse(const char *text, const mt_expr_scope *scope, mt_arena *
     p.number = 0;
     p.number_end = 0;
     p.depth = 0;
+    p.conditional = false;
+    p.atom = 0;
     p.length = 0;
+    p.n_operands = 0;
     p.scope = scope == NULL ? &nothing : scope;
     p.err = err;
     MT_TRY(parse_sum(&p));
@@ -749,15 +941,22 @@ bool mt_expr_is_constant(const mt_expr *e, double *value)
 {
     double stack[MT_EXPR_MAX_CODE];
     int top = 0;
+    bool none = false; /* a condition has no value */
+    for (int i = 0; i < e->length; i++) {
+        if (e->code[i].op == MT_OP_PARAM) {
+            return false;
+        }
+    }
     memset(stack, 0, (size_t)e->length * sizeof *stack); /* which is as deep as it gets */
     for (int i = 0; i < e->length; i++) {
         const mt_code c = e->code[i];
-        if (c.op == MT_OP_PARAM) {
-            return false;
-        }
         const int operands = mt_op_operands(c.op);
         double v = c.value;
-        if (c.op == MT_OP_INTERP) {
+        if (c.op == MT_OP_IF || c.op == MT_OP_THEN || c.op == MT_OP_ELSE) {
+            v = stack[top - 1];
+            none = none || (c.op == MT_OP_IF && isnan(v));
+            i += c.op == MT_OP_THEN || (c.op == MT_OP_IF && v == 0.0) ? c.param : 0;
+        } else if (c.op == MT_OP_INTERP) {
             double at[3];
             mt_interpolant_at(c.curve, stack[top - 1], at);
             v = at[0];
@@ -772,6 +971,6 @@ bool mt_expr_is_constant(const mt_expr *e, double *value)
     if (top != 1) {
         return false;
     }
-    *value = stack[0];
+    *value = none ? nan("") : stack[0];
     return true;
 }

@@ -18,8 +18,15 @@
  * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; hexadecimal, inf and
  * nan are not accepted. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos
  * atan sinh cosh tanh abs; of two: atan2 min max hypot pow. interp(curve, sum) is the value of
- * a curve, called by its name, with or without quotes ' or ". Angles in radians. x^0 = 1 for
- * every x; a negative base takes integer exponents only. Constants: pi, deg (pi/180), rpm
+ * a curve, called by its name, with or without quotes ' or ".
+ * if(condition, sum, sum) is the first sum where the condition holds, else the second:
+ *     condition = term { "or" term }
+ *     term      = factor { "and" factor }
+ *     factor    = "not" factor | "(" condition ")"
+ *               | sum ( "<" | "<=" | ">" | ">=" | "==" ) sum
+ * The condition holds nothing that varies where the expression is evaluated, and of the sums
+ * only the chosen one is. "and", "or" and "not" are words there only. Angles in radians. x^0 =
+ * 1 for every x; a negative base takes integer exponents only. Constants: pi, deg (pi/180), rpm
  * (1/60: "258*rpm" is a speed in Hz), mm, cm, inch and ft (in metres); e is not a constant. A
  * parameter name is [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved. The
  * limits below, on bytes of text, on levels of parentheses, arguments, signs and exponents, and
@@ -47,6 +54,8 @@ typedef enum mt_op {
     MT_OP_TANH,
     MT_OP_ABS,
     MT_OP_INTERP, /* of a curve; mt_op_value does not know it */
+    MT_OP_NOT,
+    MT_OP_IF,
     MT_OP_ADD,
     MT_OP_SUB,
     MT_OP_MUL,
@@ -56,6 +65,19 @@ typedef enum mt_op {
     MT_OP_MIN,
     MT_OP_MAX,
     MT_OP_HYPOT,
+    /* Conditions, whose value is 1 or 0. */
+    MT_OP_LESS,
+    MT_OP_AT_MOST,
+    MT_OP_GREATER,
+    MT_OP_AT_LEAST,
+    MT_OP_EQUAL,
+    MT_OP_AND,
+    MT_OP_OR,
+    /* if(c, a, b) is "c IF a THEN b ELSE": where c is false, the code of a and THEN is skipped,
+     * else that of b and ELSE. Who does not skip sees operations of two operands: THEN has c
+     * and a, ELSE what THEN left and b. */
+    MT_OP_THEN,
+    MT_OP_ELSE,
     MT_OP_COUNT
 } mt_op;
 
@@ -63,7 +85,9 @@ typedef struct mt_interpolant mt_interpolant; /* expr/interpolant.h */
 
 typedef struct mt_code {
     mt_op op;
-    int param; /* MT_OP_PARAM: index of the parameter; MT_OP_CONST: its mt_kind (expr/kind.h) */
+    /* MT_OP_PARAM: index of the parameter; MT_OP_CONST: its mt_kind (expr/kind.h); MT_OP_IF and
+     * MT_OP_THEN: number of elements that may be skipped */
+    int param;
     union {
         double value;                /* MT_OP_CONST */
         const mt_interpolant *curve; /* MT_OP_INTERP */

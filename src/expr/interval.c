@@ -381,6 +381,17 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
         return mt_interval_of(fmax(a.lo, b.lo), fmax(a.hi, b.hi));
     case MT_OP_HYPOT:
         return widen_within(hypot(mig(a), mig(b)), hypot(mag(a), mag(b)), 0.0, HUGE_VAL);
+    case MT_OP_NOT: /* of conditions, which are decided, nothing is asked */
+    case MT_OP_IF:
+    case MT_OP_LESS:
+    case MT_OP_AT_MOST:
+    case MT_OP_GREATER:
+    case MT_OP_AT_LEAST:
+    case MT_OP_EQUAL:
+    case MT_OP_AND:
+    case MT_OP_OR:
+    case MT_OP_THEN:
+    case MT_OP_ELSE:
     case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
@@ -520,6 +531,17 @@ mt_interval_partials mt_interval_op_partials(mt_op op, mt_interval a, mt_interva
         return (mt_interval_partials){cosine(a, v), cosine(b, v)};
     case MT_OP_MIN:
     case MT_OP_MAX:
+    case MT_OP_NOT: /* of conditions, which are decided, nothing is asked */
+    case MT_OP_IF:
+    case MT_OP_LESS:
+    case MT_OP_AT_MOST:
+    case MT_OP_GREATER:
+    case MT_OP_AT_LEAST:
+    case MT_OP_EQUAL:
+    case MT_OP_AND:
+    case MT_OP_OR:
+    case MT_OP_THEN:
+    case MT_OP_ELSE:
     case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:

@@ -33,15 +33,39 @@ typedef enum rule {
     RULE_ANGLE,
     RULE_SUM,
     RULE_PRODUCT,
-    RULE_POWER
+    RULE_POWER,
+    RULE_COMPARISON, /* a number, of two of one kind */
+    RULE_LAST        /* THEN: the kind of what is chosen */
 } rule;
 static const rule rule_of[MT_OP_COUNT] = {
-    [MT_OP_NEG] = RULE_SAME,   [MT_OP_ABS] = RULE_SAME,       [MT_OP_SQRT] = RULE_ROOT,
-    [MT_OP_CBRT] = RULE_ROOT,  [MT_OP_ASIN] = RULE_ANGLE,     [MT_OP_ACOS] = RULE_ANGLE,
-    [MT_OP_ATAN] = RULE_ANGLE, [MT_OP_ATAN2] = RULE_ANGLE,    [MT_OP_ADD] = RULE_SUM,
-    [MT_OP_SUB] = RULE_SUM,    [MT_OP_MIN] = RULE_SUM,        [MT_OP_MAX] = RULE_SUM,
-    [MT_OP_HYPOT] = RULE_SUM,  [MT_OP_MUL] = RULE_PRODUCT,    [MT_OP_DIV] = RULE_PRODUCT,
-    [MT_OP_POW] = RULE_POWER,  [MT_OP_INTERP] = RULE_UNKNOWN,
+    [MT_OP_NEG] = RULE_SAME,
+    [MT_OP_ABS] = RULE_SAME,
+    [MT_OP_SQRT] = RULE_ROOT,
+    [MT_OP_CBRT] = RULE_ROOT,
+    [MT_OP_ASIN] = RULE_ANGLE,
+    [MT_OP_ACOS] = RULE_ANGLE,
+    [MT_OP_ATAN] = RULE_ANGLE,
+    [MT_OP_ATAN2] = RULE_ANGLE,
+    [MT_OP_ADD] = RULE_SUM,
+    [MT_OP_SUB] = RULE_SUM,
+    [MT_OP_MIN] = RULE_SUM,
+    [MT_OP_MAX] = RULE_SUM,
+    [MT_OP_HYPOT] = RULE_SUM,
+    [MT_OP_MUL] = RULE_PRODUCT,
+    [MT_OP_DIV] = RULE_PRODUCT,
+    [MT_OP_POW] = RULE_POWER,
+    [MT_OP_INTERP] = RULE_UNKNOWN,
+    [MT_OP_IF] = RULE_SAME,
+    [MT_OP_THEN] = RULE_LAST,
+    [MT_OP_ELSE] = RULE_SUM,
+    [MT_OP_NOT] = RULE_SAME,
+    [MT_OP_AND] = RULE_COMPARISON,
+    [MT_OP_OR] = RULE_COMPARISON,
+    [MT_OP_LESS] = RULE_COMPARISON,
+    [MT_OP_AT_MOST] = RULE_COMPARISON,
+    [MT_OP_GREATER] = RULE_COMPARISON,
+    [MT_OP_AT_LEAST] = RULE_COMPARISON,
+    [MT_OP_EQUAL] = RULE_COMPARISON,
 };
 
 mt_kind mt_kind_of_dimension(mt_dimension dimension)
@@ -155,6 +179,8 @@ static part unary(mt_op op, const part *a)
     case RULE_SUM:
     case RULE_PRODUCT:
     case RULE_POWER:
+    case RULE_COMPARISON:
+    case RULE_LAST:
         break;
     }
     return made(MT_KIND_NUMBER, value, false, nan(""));
@@ -179,6 +205,12 @@ static part power(mt_op op, const part *a, const part *b)
                 mt_op_value(op, a->value, b->value), area && a->mixed, a->bare);
 }
 
+static part comparison(mt_op op, const part *a, const part *b)
+{
+    const part of = sum(op, a, b);
+    return made(MT_KIND_NUMBER, nan(""), of.mixed, of.bare);
+}
+
 static part binary(mt_op op, const part *a, const part *b)
 {
     switch (rule_of[op]) {
@@ -188,6 +220,10 @@ static part binary(mt_op op, const part *a, const part *b)
         return product_or_quotient(op, a, b);
     case RULE_POWER:
         return power(op, a, b);
+    case RULE_COMPARISON:
+        return comparison(op, a, b);
+    case RULE_LAST:
+        return made(b->kind, b->value, a->mixed || b->mixed, a->mixed ? a->bare : b->bare);
     case RULE_NUMBER:
     case RULE_UNKNOWN:
     case RULE_SAME:
@@ -440,7 +476,10 @@ static powers binary_powers(mt_op op, const powers *a, const powers *b)
     case MT_OP_MIN:
     case MT_OP_MAX:
     case MT_OP_HYPOT:
+    case MT_OP_ELSE:
         return sum_powers(a, b);
+    case MT_OP_THEN:
+        return *b;
     case MT_OP_MUL:
         return product_of_powers(a, b, 1);
     case MT_OP_DIV:

@@ -15,7 +15,10 @@ const char *mt_op_name(mt_op op)
         [MT_OP_INTERP] = "interp", [MT_OP_ADD] = "+",           [MT_OP_SUB] = "-",
         [MT_OP_MUL] = "*",         [MT_OP_DIV] = "/",           [MT_OP_POW] = "^",
         [MT_OP_ATAN2] = "atan2",   [MT_OP_MIN] = "min",         [MT_OP_MAX] = "max",
-        [MT_OP_HYPOT] = "hypot",
+        [MT_OP_HYPOT] = "hypot",   [MT_OP_NOT] = "not",         [MT_OP_IF] = "if",
+        [MT_OP_LESS] = "<",        [MT_OP_AT_MOST] = "<=",      [MT_OP_GREATER] = ">",
+        [MT_OP_AT_LEAST] = ">=",   [MT_OP_EQUAL] = "==",        [MT_OP_AND] = "and",
+        [MT_OP_OR] = "or",         [MT_OP_THEN] = "then",       [MT_OP_ELSE] = "else",
     };
     return op < MT_OP_COUNT ? names[op] : "unknown";
 }
@@ -37,6 +40,36 @@ static double quotient(double a, double b)
 static double pow_value(double a, double b)
 {
     return a == 0.0 && b < 0.0 ? nan("") : pow(a, b);
+}
+
+/* 1 or 0; NaN where an operand is. */
+static double truth(bool holds, double a, double b)
+{
+    return isnan(a) || isnan(b) ? nan("") : holds ? 1.0 : 0.0;
+}
+
+static double condition_value(mt_op op, double a, double b)
+{
+    switch ((int)op) {
+    case MT_OP_LESS:
+        return truth(a < b, a, b);
+    case MT_OP_AT_MOST:
+        return truth(a <= b, a, b);
+    case MT_OP_GREATER:
+        return truth(a > b, a, b);
+    case MT_OP_AT_LEAST:
+        return truth(a >= b, a, b);
+    case MT_OP_EQUAL:
+        return truth(a == b, a, b);
+    case MT_OP_AND:
+        return truth(a != 0.0 && b != 0.0, a, b);
+    case MT_OP_OR:
+        return truth(a != 0.0 || b != 0.0, a, b);
+    case MT_OP_NOT:
+        return truth(a == 0.0, a, 0.0);
+    default:
+        return nan("");
+    }
 }
 
 double mt_op_value(mt_op op, double a, double b)
@@ -92,6 +125,18 @@ double mt_op_value(mt_op op, double a, double b)
         return b > a ? b : a;
     case MT_OP_HYPOT:
         return hypot(a, b);
+    case MT_OP_LESS:
+    case MT_OP_AT_MOST:
+    case MT_OP_GREATER:
+    case MT_OP_AT_LEAST:
+    case MT_OP_EQUAL:
+    case MT_OP_AND:
+    case MT_OP_OR:
+    case MT_OP_NOT:
+        return condition_value(op, a, b);
+    case MT_OP_IF:
+    case MT_OP_THEN:
+    case MT_OP_ELSE:
     case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:
@@ -202,6 +247,17 @@ mt_partials mt_op_partials(mt_op op, double a, double b, double v)
         return choice(b > a);
     case MT_OP_HYPOT:
         return (mt_partials){quotient(a, v), quotient(b, v)};
+    case MT_OP_LESS:
+    case MT_OP_AT_MOST:
+    case MT_OP_GREATER:
+    case MT_OP_AT_LEAST:
+    case MT_OP_EQUAL:
+    case MT_OP_AND:
+    case MT_OP_OR:
+    case MT_OP_NOT:
+    case MT_OP_IF:
+    case MT_OP_THEN:
+    case MT_OP_ELSE:
     case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:

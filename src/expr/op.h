@@ -17,7 +17,8 @@ const char *mt_op_name(mt_op op);
 /* Number of operands: 0, 1 or 2. */
 int mt_op_operands(mt_op op);
 /* Value; b is ignored where op has one operand. NaN or infinite outside the domain, without a
- * division by zero. NaN for MT_OP_CONST, MT_OP_PARAM and MT_OP_INTERP. */
+ * division by zero; of a condition 1 or 0. NaN for MT_OP_CONST, MT_OP_PARAM, MT_OP_INTERP and
+ * what if() is made of. */
 double mt_op_value(mt_op op, double a, double b);
 
 typedef struct mt_partials {

@@ -74,6 +74,9 @@ static mt_node intern(mt_program *p, const mt_program_node *n)
         return known >= 0 ? known : MT_NO_NODE;
     }
     p->nodes[p->count] = *n;
+    p->nodes[p->count].varies = n->op == MT_OP_PARAM ||
+                                (n->a != MT_NO_NODE && nodes[n->a].varies) ||
+                                (n->b != MT_NO_NODE && nodes[n->b].varies);
     return p->count++;
 }
 
@@ -209,6 +212,32 @@ mt_node mt_program_copy(mt_program *p, const mt_program_node *of, mt_node a, mt_
     }
 }
 
+/* An input that the node depends on. */
+static int input_of(const mt_program *p, mt_node node)
+{
+    while (p->nodes[node].op != MT_OP_PARAM) {
+        const mt_program_node *const n = &p->nodes[node];
+        node = p->nodes[n->a].varies ? n->a : n->b;
+    }
+    return p->nodes[node].input;
+}
+
+/* True where a condition holds. One without a finite value (1/0 > 2) counts as one that does:
+ * its operand's node stays and fails the evaluation. */
+static bool holds(mt_program *p, mt_node condition, mt_addr addr)
+{
+    if (condition == MT_NO_NODE) {
+        return true;
+    }
+    const mt_program_node *const n = &p->nodes[condition];
+    if (n->varies && !p->undecided) {
+        p->undecided = true;
+        p->undecided_addr = addr;
+        p->undecided_input = input_of(p, condition);
+    }
+    return n->op != MT_OP_CONST || n->value != 0.0;
+}
+
 mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr)
 {
     mt_node stack[MT_EXPR_MAX_CODE];
@@ -218,7 +247,13 @@ mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, 
         const mt_code c = e->code[i];
         const int operands = mt_op_operands(c.op);
         mt_node node = MT_NO_NODE;
-        if (operands == 2) {
+        if (c.op == MT_OP_IF) {
+            node = stack[top - 1];
+            i += holds(p, node, addr) ? 0 : c.param;
+        } else if (c.op == MT_OP_THEN || c.op == MT_OP_ELSE) {
+            node = stack[top - 1];
+            i += c.op == MT_OP_THEN ? c.param : 0;
+        } else if (operands == 2) {
             node = mt_program_binary(p, c.op, stack[top - 2], stack[top - 1], addr);
         } else if (c.op == MT_OP_INTERP) {
             node = mt_program_interp(p, c.curve, stack[top - 1], addr);
@@ -291,6 +326,11 @@ static void collect_inputs(mt_program *p, int i)
 mt_status mt_program_finish(mt_program *p, mt_err *err)
 {
     const size_t count = (size_t)p->count;
+    if (p->undecided) {
+        return mt_fail(err, MT_E_INPUT,
+                       "the condition of an if() depends on what varies here; it can hold "
+                       "numbers and parameters that keep their values");
+    }
     p->words = p->n_inputs / BITS + 1;
     p->active = mt_arena_alloc(p->mem, count, sizeof *p->active);
     p->active_nodes = mt_arena_int(p->mem, count);

@@ -26,7 +26,8 @@ typedef struct mt_program_node {
     mt_op op;
     mt_node a; /* operands; MT_NO_NODE: none */
     mt_node b;
-    int input; /* MT_OP_PARAM */
+    int input;   /* MT_OP_PARAM */
+    bool varies; /* it depends on an input; set by the program */
     union {
         double value;                /* MT_OP_CONST */
         const mt_interpolant *curve; /* MT_OP_INTERP */
@@ -53,6 +54,11 @@ typedef struct mt_program {
     mt_program_span *span; /* [count] shortest span with all inputs that a node depends on */
     int *active_nodes;     /* [n_active] active nodes in order */
     int n_active;
+    /* an if() whose condition depends on an input, which it must not: the first one's address
+     * and one of the inputs */
+    bool undecided;
+    mt_addr undecided_addr;
+    int undecided_input;
 } mt_program;
 
 mt_status mt_program_init(mt_program *p, int n_inputs, mt_arena *mem, mt_err *err);
@@ -63,14 +69,15 @@ mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr
 mt_node mt_program_interp(mt_program *p, const mt_interpolant *curve, mt_node a, mt_addr addr);
 /* A copy of a node of another program, with operands a and b (MT_NO_NODE: it has none) here. */
 mt_node mt_program_copy(mt_program *p, const mt_program_node *of, mt_node a, mt_node b);
-/* Add a parsed expression; its parameter i is node params[i]. */
+/* Add a parsed expression; its parameter i is node params[i]. Of an if() only the chosen branch
+ * is added; where its condition depends on an input `undecided` is set, and finish fails. */
 mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr);
 /* Shorthands without address, for sums made by the mechanics. */
 mt_node mt_program_add(mt_program *p, mt_node a, mt_node b);
 mt_node mt_program_sub(mt_program *p, mt_node a, mt_node b);
 mt_node mt_program_mul(mt_program *p, mt_node a, mt_node b);
 mt_node mt_program_div(mt_program *p, mt_node a, mt_node b);
-/* Finish the program. Fails MT_E_MEMORY. */
+/* Finish the program. Fails MT_E_MEMORY; MT_E_INPUT where it is undecided. */
 mt_status mt_program_finish(mt_program *p, mt_err *err);
 
 /* Value of a node at inputs, from those of the nodes before it. */

@@ -127,6 +127,29 @@ static mt_status add_parameter(const mt_model *model, const char *option, const 
     return MT_OK;
 }
 
+/* True where the condition of an if() depends on the parameter: nothing has a slope by it. */
+static bool decides(const mt_model *model, int parameter, mt_arena *mem)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    mt_numbers numbers;
+    const mt_status rc = mt_numbers_new(model, MT_ABSENT, 1, &parameter, model->n_nums,
+                                        model->nums, mem, &numbers, NULL);
+    mt_arena_rewind(mem, mark);
+    return rc == MT_E_INPUT;
+}
+
+static bool has_condition(const mt_model *model)
+{
+    bool any = false;
+    for (int i = 0; i < model->n_nums; i++) {
+        const mt_expr *const e = &model->nums[i].expr;
+        for (int k = 0; k < e->length && !any; k++) {
+            any = e->code[k].op == MT_OP_IF;
+        }
+    }
+    return any;
+}
+
 mt_status mt_loaded_model_parameters(const mt_loaded_model *s, const char *option,
                                      const char *list, mt_arena *mem, int *n, int **out,
                                      mt_err *err)
@@ -135,8 +158,10 @@ mt_status mt_loaded_model_parameters(const mt_loaded_model *s, const char *optio
     *n = 0;
     *out = mt_arena_int(mem, (size_t)model->n_parameters);
     MT_TRY(mt_arena_check(mem, err));
+    const bool conditions = list == NULL && has_condition(model);
     for (int i = 0; list == NULL && i < model->n_parameters; i++) {
-        if (mt_model_parameter_follows(model, i) == 0) {
+        if (mt_model_parameter_follows(model, i) == 0 &&
+            !(conditions && decides(model, i, mem))) {
             (*out)[(*n)++] = i;
         }
     }

@@ -42,7 +42,8 @@ mt_status mt_loaded_model_number(mt_loaded_model *s, const char *option, const m
  * or displacements, whichever the joint has. */
 const mt_unit *mt_loaded_model_joint_unit(const mt_model *model, const char *name);
 /* The parameters "A,B" of an option, or where list is NULL all that are not expressions of
- * others: *n of them in mem. Fails: MT_E_USAGE, MT_E_INPUT (there are none), MT_E_MEMORY. */
+ * others and that no condition of an if() depends on: *n of them in mem. Fails: MT_E_USAGE,
+ * MT_E_INPUT (there are none), MT_E_MEMORY. */
 mt_status mt_loaded_model_parameters(const mt_loaded_model *s, const char *option,
                                      const char *list, mt_arena *mem, int *n, int **out,
                                      mt_err *err);

@@ -235,6 +235,8 @@ static part unary(mt_op op, const part *a)
     case MT_OP_ACOS:
     case MT_OP_ATAN:
         return (part){v, 0.0, true, MT_ABSENT};
+    case MT_OP_IF:
+        return *a;
     default:
         return (part){v, v, false, a->parameter};
     }
@@ -244,6 +246,12 @@ static part binary(mt_op op, const part *a, const part *b)
 {
     const double v = mt_op_value(op, a->value, b->value);
     const int larger = fabs(a->bare) >= fabs(b->bare) ? a->parameter : b->parameter;
+    if (op == MT_OP_THEN) { /* a: the condition */
+        return a->value != 0.0 ? *b : (part){.value = nan(""), .parameter = MT_ABSENT};
+    }
+    if (op == MT_OP_ELSE) {
+        return isnan(a->value) ? *b : *a;
+    }
     if (op == MT_OP_ADD || op == MT_OP_SUB) {
         const double bare = op == MT_OP_ADD ? a->bare + b->bare : a->bare - b->bare;
         return (part){v, bare, a->unit || b->unit, larger};

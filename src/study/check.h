@@ -12,8 +12,9 @@ typedef struct mt_study_check {
     mt_diags *diags;
 } mt_study_check;
 
-/* The box of designs whose modes are counted alike; and where there are no errors the model at
- * the bounds of the variables, and redundant joints. After all other checks. */
+/* Conditions that depend on variables; the box of designs whose modes are counted alike; and
+ * where there are no errors the model at the bounds of the variables, and redundant joints.
+ * After all other checks. */
 void mt_study_check_bounds(mt_study_check *c);
 /* What is allowed and unlikely; after the checks. Warnings that compare members come only where
  * there are no errors. */

@@ -16,11 +16,144 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/format.h"
 #include "mechanics/linear.h"
 #include "mechanics/products.h"
 #include "model/lint.h"
 #include "model/values.h"
 #include "study/check.h"
+
+/* Conditions
+ *
+ * What an if() chooses is a question of the parameters that keep their values: a design that
+ * the search moves over a condition's edge would have a jump there. */
+
+static bool has_condition(const mt_expr *e)
+{
+    for (int i = 0; i < e->length; i++) {
+        if (e->code[i].op == MT_OP_IF) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The expressions of a study that follow the design, with their addresses in its file: the
+ * first `most` of list; returns their number. */
+static int list_expressions(const mt_study *s, int most, mt_number *list)
+{
+    int n = 0;
+    for (int i = 0; i < s->n_goals + s->n_objectives + s->n_published; i++) {
+        const int objective = i - s->n_goals;
+        const int published = objective - s->n_objectives;
+        const mt_number of =
+            objective < 0
+                ? (mt_number){.expr = s->goals[i].expression, .addr = s->goals[i].addr}
+            : published < 0 ? (mt_number){.expr = s->objectives[objective].expression,
+                                          .addr = s->objectives[objective].addr}
+                            : (mt_number){.expr = s->published[published].quantity,
+                                          .addr = s->published[published].addr};
+        const bool has =
+            of.expr.length > 0 && (i >= s->n_goals || s->goals[i].expression_text != NULL);
+        if (has && n < most) {
+            list[n] = of;
+        }
+        n += has;
+    }
+    return n;
+}
+
+/* Where a condition depends on a variable: told at that variable, or at the study's own
+ * expression. */
+static void tell_undecided(mt_study_check *c, const mt_program *p, bool own)
+{
+    const mt_variable *const v = &c->study->variables[p->undecided_input];
+    int line = 0;
+    int column = 0;
+    char where[64] = "";
+    if (own) {
+        const mt_addr goal = mt_diag_member(c->diags, p->undecided_addr, "expression");
+        const mt_addr other = mt_diag_member(c->diags, goal, "minimise");
+        mt_diag_error(c->diags, mt_diag_member(c->diags, other, "quantity"),
+                      "the condition of an if() depends on \"%s\", which is a variable: the "
+                      "expression would jump; a condition holds numbers, and parameters that "
+                      "keep their values",
+                      v->parameter_name.s);
+        return;
+    }
+    if (mt_model_locate(c->model, p->undecided_addr, &line, &column)) {
+        (void)mt_snprintf(where, sizeof where, " (line %d, column %d)", line, column);
+    }
+    mt_diag_error(
+        c->diags, v->parameter_name.addr,
+        "\"%s\" cannot be a variable: the condition of an if() in the model%s depends "
+        "on it, and the mechanism would jump; a condition holds numbers, and "
+        "parameters that keep their values",
+        v->parameter_name.s, where);
+}
+
+/* The numbers of one configuration (MT_ABSENT: the study's own expressions) with the variables
+ * as inputs; false: told. */
+static bool decide(mt_study_check *c, int configuration, const int *is_input, int n,
+                   const mt_number *numbers, mt_arena *mem)
+{
+    mt_program p;
+    const size_t n_parameters = (size_t)c->model->n_parameters;
+    mt_node *const nodes = mt_arena_int(mem, n_parameters + 1);
+    if (mt_program_init(&p, c->study->n_variables, mem, NULL) != MT_OK ||
+        mt_emit_parameters(c->model, configuration, is_input, &p, nodes, mem, NULL) != MT_OK) {
+        return true;
+    }
+    const bool by_model = p.undecided;
+    for (int i = 0; i < n; i++) {
+        (void)mt_program_expr(&p, &numbers[i].expr, nodes, numbers[i].addr);
+    }
+    if (p.undecided) {
+        tell_undecided(c, &p, configuration == MT_ABSENT && !by_model);
+    }
+    return !p.undecided;
+}
+
+static void decide_all(mt_study_check *c, mt_arena *mem)
+{
+    const mt_study *const s = c->study;
+    const mt_model *const m = c->model;
+    const int n = list_expressions(s, 0, NULL);
+    mt_number *const own = mt_arena_alloc(mem, (size_t)n, sizeof *own);
+    int *const is_input = mt_arena_int(mem, (size_t)m->n_parameters + 1);
+    bool any = false;
+    if (mt_arena_failed(mem)) {
+        return;
+    }
+    (void)list_expressions(s, n, own);
+    for (int i = 0; i < m->n_nums + n; i++) {
+        any = any || has_condition(i < m->n_nums ? &m->nums[i].expr : &own[i - m->n_nums].expr);
+    }
+    for (int i = 0; i < m->n_parameters; i++) {
+        is_input[i] = MT_ABSENT;
+    }
+    for (int i = 0; i < s->n_variables; i++) {
+        if (s->variables[i].parameter != MT_ABSENT) {
+            is_input[s->variables[i].parameter] = i;
+        }
+    }
+    bool decided = any && decide(c, MT_ABSENT, is_input, n, own, mem);
+    for (int i = 0; i < m->n_configurations && decided; i++) {
+        decided = decide(c, i, is_input, m->n_nums, m->nums, mem);
+    }
+}
+
+static void check_conditions(mt_study_check *c)
+{
+    mt_arena mem = {0};
+    if (mt_arena_init(&mem, 0, NULL) == MT_OK) {
+        decide_all(c, &mem);
+    }
+    if (mt_arena_failed(&mem)) {
+        mt_arena_fail(&c->study->mem);
+    }
+    mt_arena_free(&mem);
+}
 
 /* The box whose modes are counted alike */
 
@@ -446,6 +579,7 @@ static void check_redundant(mt_study_check *c)
 void mt_study_check_bounds(mt_study_check *c)
 {
     fill_counted(c);
+    check_conditions(c);
     if (c->diags->errors == 0 && !mt_arena_failed(&c->study->mem)) {
         check_corners(c);
     }

@@ -175,6 +175,17 @@ static inline quad exact_op(mt_op op, quad x, quad y)
         return x > y ? x : y;
     case MT_OP_HYPOT:
         return quad_root((x * x) + (y * y));
+    case MT_OP_NOT:
+    case MT_OP_IF:
+    case MT_OP_LESS:
+    case MT_OP_AT_MOST:
+    case MT_OP_GREATER:
+    case MT_OP_AT_LEAST:
+    case MT_OP_EQUAL:
+    case MT_OP_AND:
+    case MT_OP_OR:
+    case MT_OP_THEN:
+    case MT_OP_ELSE:
     case MT_OP_INTERP:
     case MT_OP_CONST:
     case MT_OP_PARAM:

@@ -60,6 +60,23 @@ static void parse__precedence_and_associativity(mt_test *t)
         {"max(x,y)+min(y,z)*2", 9.0},
         {"hypot(y,4)^2", 25.0},
         {"atan2(y-y, -x)", 3.14159265358979323846},
+        {"if(1 < 2, x, y)", 2.0},
+        {"if(2 < 1, x, y)*10", 30.0},
+        {"1+if(2<=2,x,y)+1", 4.0},
+        {"if(2 > 2, x, y)", 3.0},
+        {"if(2 >= 2, x, y)", 2.0},
+        {"if(1+1 == 4/2, x, y)", 2.0},
+        {"if(not 1 < 2, x, y)", 3.0},
+        {"if(not not 1 < 2, x, y)", 2.0},
+        /* "and" binds tighter than "or", "not" tighter than both */
+        {"if(1 < 2 or 1 < 2 and 2 < 1, x, y)", 2.0},
+        {"if((1 < 2 or 1 < 2) and 2 < 1, x, y)", 3.0},
+        {"if(not 2 < 1 and 2 < 1, x, y)", 3.0},
+        {"if(not (2 < 1 and 2 < 1), x, y)", 2.0},
+        {"if((1 + 1)*2 < ((5)), x, y)", 2.0},
+        {"if(if(1 < 2, 3, 4) == 3, if(2 < 1, x, y), z)", 3.0},
+        {"if(1 < if(0 == 1, 0, 2), x, y)", 2.0},
+        {"if(max(1, 2) < 3, min(x, if(1 == 1, y, z)), z)", 2.0},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s", rows[i].text);
@@ -190,7 +207,7 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
         {"1e+x", "at character 1: \"1e\" is not a number"},
         {".", "at character 1: \".\" is not a number"},
         {"x*1e309", "at character 3: \"1e309\" is too large for a number"},
-        {"inf", "at character 1: unknown name \"inf\""},
+        {"inf", "at character 1: unknown name \"inf\"; did you mean \"if\"?"},
         {"nan", "at character 1: unknown name \"nan\"; did you mean \"tan\"?"},
         {"x,y", "at character 2: \",\" where an operator or the end is expected"},
         {"1,5", "at character 2: \",\" where an operator or the end is expected; did you mean "
@@ -205,6 +222,34 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
          "at character 3: \"\xE2\x88\x92\" where an operator or the end is expected"},
         {"\xCF\x89 y",
          "at character 1: \"\xCF\x89\" where a number, a name or \"(\" is expected"},
+        {"x < y",
+         "at character 3: \"<\" where an operator or the end (comparisons stand in the "
+         "condition of if(condition, a, b)) is expected"},
+        {"if(x, 1, 2)", "at character 4: a number where a condition is expected, such as "
+                        "\"a > 0\""},
+        {"if(1 < 2 < 3, 1, 2)",
+         "at character 10: a second comparison; write \"a < b and b < c\""},
+        {"if((1 < 2) + 1 < 3, 1, 2)", "at character 5: a condition where a number is expected"},
+        {"if(1 and 2 < 3, 1, 2)",
+         "at character 4: a number where a condition is expected, such as \"a > 0\""},
+        {"if(not 2, 1, 2)",
+         "at character 8: a number where a condition is expected, such as \"a > 0\""},
+        {"if(1 = 2, 1, 2)",
+         "at character 6: \"=\" is not part of a condition; did you mean \"==\"?"},
+        {"if(1 < 2 && 2 < 3, 1, 2)",
+         "at character 10: \"&\" is not part of a condition; did you mean \"and\"?"},
+        {"if(1 != 2, 1, 2)",
+         "at character 6: \"!=\" is not part of a condition; did you mean \"not a == b\"?"},
+        {"if(1 < 2)", "at character 9: \")\" where \",\" behind the condition of if(condition, "
+                      "a, b) is expected"},
+        {"if(1 < 2, x)", "at character 12: \")\" where \",\" and what if(condition, a, b) is "
+                         "where the condition is false is expected"},
+        {"if(1 < 2, x, y, z)", "at character 15: \",\" where an operator or the \")\" for the "
+                               "\"(\" at character 3 is expected"},
+        {"if(abs(1 < 2) < 4, x, y)",
+         "at character 10: \"<\" where an operator or the \")\" for "
+         "the \"(\" at character 7 is expected"},
+        {"if", "at character 1: function \"if\" without \"(\""},
         {"x\x01", "at character 2: control character where an operator or the end is expected"},
     };
     mt_arena mem;
@@ -312,7 +357,7 @@ static void parse__names_are_reserved_and_constants_recognised(mt_test *t)
 {
     int n = 0;
     const char *const *const names = mt_expr_names(&n);
-    CHECK_INT(t, n, 28);
+    CHECK_INT(t, n, 29);
     for (int i = 0; i < n; i++) {
         mt_test_row(t, "%s", names[i]);
         CHECK(t, mt_expr_reserved(names[i]));

@@ -233,6 +233,122 @@ static void program__does_again_only_what_depends_on_inputs(mt_test *t)
     }
 }
 
+/* z is a number here, x and y vary. */
+static mt_node conditional(const char *text, mt_arena *mem, mt_program *p)
+{
+    mt_expr e;
+    mt_node nodes[N_PARAMS];
+    if (mt_arena_init(mem, 0, NULL) != MT_OK ||
+        mt_program_init(p, N_PARAMS, mem, NULL) != MT_OK ||
+        parse_text(text, mem, &e, NULL) != MT_OK) {
+        return MT_NO_NODE;
+    }
+    for (int i = 0; i < N_PARAMS; i++) {
+        nodes[i] = i < 2 ? mt_program_input(p, i, ADDR) : mt_program_const(p, 5.0);
+    }
+    return mt_program_expr(p, &e, nodes, ADDR);
+}
+
+static void program__of_a_condition_only_the_chosen_branch_is_there(mt_test *t)
+{
+    static const double at[N_PARAMS] = {2.0, -3.0, 0.0, 0.0};
+    static const double upper[N_PARAMS] = {2.5, -2.0, 0.0, 0.0};
+    static const struct {
+        const char *text;
+        const char *as; /* has value, slopes and enclosures of this */
+    } rows[] = {
+        {"if(z > 4, x^2*y, sqrt(y))", "x^2*y"},
+        {"if(z > 6, ln(y), y*sin(x))", "y*sin(x)"},
+        {"if(z == 5 and not z < 0, hypot(x, y), 1/0)", "hypot(x, y)"},
+        {"3*if(z < 0 or z > 4, if(z < 5, 1/(z - z), exp(x)), ln(y)) + y", "3*exp(x) + y"},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_test_row(t, "%s", rows[i].text);
+        mt_arena mem;
+        mt_program p;
+        const mt_node root = conditional(rows[i].text, &mem, &p);
+        fixture f;
+        mt_err err;
+        if (CHECK(t, root != MT_NO_NODE && mt_program_finish(&p, NULL) == MT_OK) &&
+            CHECK(t, fixture_init(&f, rows[i].as, &err))) {
+            const size_t n = (size_t)p.count;
+            double *const v = mt_arena_f64(&mem, n, 3);
+            double *const d = mt_arena_f64(&mem, n * N_PARAMS, 3);
+            double *const dlo = d + n * N_PARAMS;
+            double *const dhi = dlo + n * N_PARAMS;
+            CHECK_INT(t, mt_program_gradient(&p, at, v, d, NULL, &err), MT_OK);
+            CHECK_INT(t, mt_program_gradient(&f.p, at, f.value, f.grad, NULL, &err), MT_OK);
+            mt_program_interval_gradient(&p, at, upper, v + n, v + 2 * n, dlo, dhi);
+            mt_program_interval_gradient(&f.p, at, upper, f.lo, f.hi, f.dlo, f.dhi);
+            CHECK(t, v[root] == f.value[f.root]);
+            CHECK(t, v[n + (size_t)root] == f.lo[f.root]);
+            CHECK(t, v[2 * n + (size_t)root] == f.hi[f.root]);
+            for (int k = 0; k < N_PARAMS; k++) {
+                const ptrdiff_t own = (ptrdiff_t)root * N_PARAMS + k;
+                CHECK(t, d[own] == root_row(&f, f.grad)[k]);
+                CHECK(t, dlo[own] == root_row(&f, f.dlo)[k]);
+                CHECK(t, dhi[own] == root_row(&f, f.dhi)[k]);
+            }
+            fixture_free(&f);
+        }
+        mt_arena_free(&mem);
+    }
+}
+
+static void program__a_condition_of_inputs_is_refused(mt_test *t)
+{
+    static const struct {
+        const char *text;
+        int input; /* -1: decided */
+    } rows[] = {
+        {"if(x > 1, 1, 2)", 0},
+        {"if(2 > 1, 1, if(y < 3, 1, 2))", -1},
+        {"if(2 < 1, 1, if(y < 3, 1, 2))", 1},
+        {"if(z > 1 or sin(y) == 0, 1, 2)", 1},
+        {"if(x - x == 0, 1, 2)", -1},
+        {"if(if(z > 1, z, x) > 2, x, y)", -1},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_test_row(t, "%s", rows[i].text);
+        mt_arena mem;
+        mt_program p;
+        mt_err err = {.code = MT_OK};
+        CHECK(t, conditional(rows[i].text, &mem, &p) != MT_NO_NODE);
+        CHECK_INT(t, mt_program_finish(&p, &err), rows[i].input < 0 ? MT_OK : MT_E_INPUT);
+        CHECK(t, p.undecided == (rows[i].input >= 0));
+        if (p.undecided) {
+            CHECK_INT(t, p.undecided_addr, ADDR);
+            CHECK_INT(t, p.undecided_input, rows[i].input);
+            CHECK(t, strstr(err.text, "condition of an if()") != NULL);
+        }
+        mt_arena_free(&mem);
+    }
+}
+
+/* 1/0 > 2 is neither true nor false. */
+static void program__a_condition_without_a_value_is_an_error(mt_test *t)
+{
+    double value = 0.0;
+    mt_arena mem;
+    mt_program p;
+    mt_expr e;
+    mt_err err = {.code = MT_OK};
+    double at[N_PARAMS] = {1.0, 1.0, 1.0, 1.0};
+    double all[16];
+    CHECK(t, conditional("if(1/0 > 2, x, y)", &mem, &p) != MT_NO_NODE);
+    CHECK_INT(t, mt_program_finish(&p, &err), MT_OK);
+    REQUIRE(t, p.count <= MT_COUNT(all));
+    CHECK_INT(t, mt_program_eval(&p, at, all, NULL, &err), MT_E_DOMAIN);
+    CHECK_STR(t, err.text, "1 / 0 has no finite value");
+    REQUIRE(t, parse_text("if(1/0 > 2, 3, 4)", &mem, &e, &err) == MT_OK);
+    CHECK(t, mt_expr_is_constant(&e, &value) && isnan(value));
+    REQUIRE(t, parse_text("if(1 > 2, 1/0, 4)", &mem, &e, &err) == MT_OK);
+    CHECK(t, mt_expr_is_constant(&e, &value) && value == 4.0);
+    REQUIRE(t, parse_text("if(1 < 2, 3, x)", &mem, &e, &err) == MT_OK);
+    CHECK(t, !mt_expr_is_constant(&e, &value));
+    mt_arena_free(&mem);
+}
+
 static void program__evaluation_allocates_nothing(mt_test *t)
 {
     const double inputs[N_PARAMS] = {1.0, 2.0, 3.0, 4.0};
@@ -257,4 +373,7 @@ MT_TEST_MAIN(MT_TEST(program__equal_nodes_are_shared),
              MT_TEST(program__knows_what_depends_on_what),
              MT_TEST(program__every_failing_allocation_is_reported),
              MT_TEST(program__does_again_only_what_depends_on_inputs),
+             MT_TEST(program__of_a_condition_only_the_chosen_branch_is_there),
+             MT_TEST(program__a_condition_of_inputs_is_refused),
+             MT_TEST(program__a_condition_without_a_value_is_an_error),
              MT_TEST(program__evaluation_allocates_nothing))

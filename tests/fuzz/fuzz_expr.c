@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Any bytes as an expression of four parameters: it is refused with a message, or parsed, built
- * and evaluated, and then its value lies in its enclosure over a box around the point.
+ * Any bytes as an expression of four parameters, two of which vary: it is refused with a
+ * message, or parsed, built and evaluated, and then its value lies in its enclosure over a box
+ * around the point.
  */
 #include <math.h>
 #include <stdint.h>
@@ -62,10 +63,15 @@ static void use(const mt_expr *e, mt_arena *mem)
     DEMAND(mt_program_init(&p, N_PARAMS, mem, NULL) == MT_OK);
     mt_node inputs[N_PARAMS];
     for (int i = 0; i < N_PARAMS; i++) {
-        inputs[i] = mt_program_input(&p, i, i);
+        inputs[i] = i < 2 ? mt_program_input(&p, i, i) : mt_program_const(&p, 3.0 + i);
     }
     const mt_node root = mt_program_expr(&p, e, inputs, N_PARAMS);
-    DEMAND(root >= 0 && mt_program_finish(&p, NULL) == MT_OK);
+    DEMAND(root >= 0);
+    if (p.undecided) { /* a condition of an if() on an input */
+        DEMAND(mt_program_finish(&p, NULL) == MT_E_INPUT);
+        return;
+    }
+    DEMAND(mt_program_finish(&p, NULL) == MT_OK);
     double value = 0.0;
     if (mt_expr_is_constant(e, &value)) {
         DEMAND(mt_program_is_constant(&p, root));

@@ -8,12 +8,13 @@ import numpy as np
 
 FUNCTIONS = {"sqrt": np.sqrt, "exp": np.exp, "ln": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan, "abs": np.abs,
              "min": np.minimum, "max": np.maximum, "pi": math.pi, "deg": math.pi / 180.0, "rpm": 1.0 / 60.0,
-             "__builtins__": {}}
+             "choose": np.where, "__builtins__": {}}
 
 
 @lru_cache(maxsize=4096)
 def _code(text):
-    return compile(text.replace("^", "**"), text, "eval")
+    # "if" is a word of Python's; a condition is a number here, whatever its branches are worth
+    return compile(re.sub(r"\bif\(", "choose(", text.replace("^", "**")), text, "eval")
 
 
 def evaluate(value, values):
@@ -23,7 +24,7 @@ def evaluate(value, values):
 
 def names(value):
     """What an expression depends on."""
-    return set(re.findall(r"[A-Za-z_]\w*", value)) - set(FUNCTIONS) if isinstance(value, str) else set()
+    return set(re.findall(r"[A-Za-z_]\w*", value)) - set(FUNCTIONS) - {"if", "and", "or", "not"} if isinstance(value, str) else set()
 
 
 def parameters(model, overrides):
