@@ -64,8 +64,8 @@ static mt_status correlate(mt_mac_view *c, int count, mt_err *err)
     return mt_mac_pair(c->a.n, c->b.n, c->mac, c->pair, &c->mem, err);
 }
 
-/* Modes of one mt_mac_side that the sensors cannot tell apart, and other doubts, as sentences; emit
- * writes one. */
+/* Modes of one mt_mac_side that the sensors cannot tell apart, and other doubts, as sentences;
+ * emit writes one. */
 typedef void (*emit_note)(void *context, const char *text);
 
 static mt_status note_alike(mt_mac_view *c, const mt_mac_side *x, emit_note emit, void *context,
