@@ -328,6 +328,9 @@ static void hold_goal(held_file *h, const mt_study *study, int index)
             &h->mem, "%s by %s", g->response_limit->output.s,
             g->response_limit->input.s == NULL ? "the ground" : g->response_limit->input.s);
     }
+    if (g->static_limit != NULL && g->static_limit->output.s != NULL) {
+        about = g->static_limit->output.s;
+    }
     item->value = g->equals;
     item->lower = g->at_least;
     item->upper = g->at_most;

@@ -75,11 +75,12 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
 }
 
 /* True where a value is limited in at least two positions of one drive, so that the limit also
- * applies between them. A target, and a weighted goal, applies at the named positions only. */
+ * applies between them. A target, a weighted goal and one about rest apply at the named
+ * positions only. */
 static bool is_limited(const mt_problem *p, const mt_requirement *d)
 {
-    const bool limits =
-        d->ops->value != NULL && d->role != MT_ROLE_RESIDUAL && !MT_HAS(d->equals);
+    const bool limits = d->ops->value != NULL && d->role != MT_ROLE_RESIDUAL &&
+                        !MT_HAS(d->equals) && d->rest == NULL;
     const int drive_positions = limits && d->view >= 0 ? mt_drive_positions_of(p, d->view) : -1;
     for (int i = 0; i < p->n_requirements && drive_positions >= 0; i++) {
         const mt_requirement *const other = &p->requirements[i];

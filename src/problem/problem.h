@@ -24,10 +24,10 @@
  * = x / scale. The total change is
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Files: problem.c compiles; goals.c, forced_response.c and goal_frequency_response.c are the
- * kinds of goal, objective.c those of objectives; rows.h and requirement.c, avoidance.c,
- * tolerance.c, objective.c the kinds of rows, which evaluate.c lays out and evaluates;
- * drive_positions.c ties the positions of one drive.
+ * Files: problem.c compiles; goals.c, forced_response.c, goal_frequency_response.c and
+ * goal_static.c are the kinds of goal, objective.c those of objectives; rows.h and
+ * requirement.c, avoidance.c, tolerance.c, objective.c the kinds of rows, which evaluate.c lays
+ * out and evaluates; drive_positions.c ties the positions of one drive.
  */
 
 /* A configuration that goals name; in a subproblem also a further position of a drive. */
@@ -82,8 +82,10 @@ typedef struct mt_requirement {
     int named;      /* position in the configuration's list, where by name */
     int pair;       /* response, vibration: index of the port pair */
     int first_mode; /* response over a band: its parts begin with this mode */
-    int n_parts;    /* number of parts, one row each; 0: a single value, one row per limit */
-    mt_node node;   /* limit: node of the expressions' program */
+    int n_rest;     /* static: 1, or 2 with a configuration whose value is subtracted */
+    struct mt_rest_reading *rest; /* [n_rest] where they are read (goal_static.c); else NULL */
+    int n_parts;  /* number of parts, one row each; 0: a single value, one row per limit */
+    mt_node node; /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
     struct mt_fit *fit;       /* frequency_response (goal_frequency_response.h); else NULL */
     double equals;            /* target, from the goal or its reference; NaN: limits only */

@@ -193,13 +193,27 @@ static mt_status find_spring(const mt_system *sys, const char *name, mt_arena *m
     return mt_arena_check(mem, err);
 }
 
+/* Component of a joint after the last dot: of its force; at rest also of its moment, 3 ... 5,
+ * and MT_PORT_HOLD; -1: none. */
+static int joint_component(const mt_system *sys, const char *text, bool at_rest)
+{
+    if (at_rest && strcmp(text, "hold") == 0) {
+        return MT_PORT_HOLD;
+    }
+    if (!at_rest || text[0] != 'r') {
+        return axis_of(sys, text);
+    }
+    const int axis = strcmp(text, "rz") == 0 ? 2 : axis_of(sys, text + 1);
+    return axis < 0 || (sys->dimension == 2 && axis != 2) ? -1 : 3 + axis;
+}
+
 /* "joint.NAME.x". */
-static mt_status find_joint_port(const mt_system *sys, const char *name, mt_arena *mem,
-                                 mt_port *out, mt_err *err)
+static mt_status find_joint_port(const mt_system *sys, const char *name, bool at_rest,
+                                 mt_arena *mem, mt_port *out, mt_err *err)
 {
     const char *const own = name + strlen(JOINT);
     const char *const dot = strrchr(own, '.');
-    const int axis = dot == NULL ? -1 : axis_of(sys, dot + 1);
+    const int axis = dot == NULL ? -1 : joint_component(sys, dot + 1, at_rest);
     if (axis < 0) {
         return refuse_unknown_port(sys, name, false, mem, err);
     }
@@ -209,11 +223,13 @@ static mt_status find_joint_port(const mt_system *sys, const char *name, mt_aren
     if (index < 0) {
         return refuse_unknown_port(sys, name, false, mem, err);
     }
+    const bool turns = axis == MT_PORT_HOLD ? sys->joints[index].angle : axis >= 3;
     *out = (mt_port){.kind = MT_PORT_JOINT,
                      .index = index,
                      .axis = axis,
+                     .turns = turns,
                      .name = mt_arena_strdup(mem, name),
-                     .unit = FORCES[0]};
+                     .unit = FORCES[turns ? 1 : 0]};
     return mt_arena_check(mem, err);
 }
 
@@ -239,5 +255,20 @@ mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, 
         return mt_fail(err, MT_E_USAGE, "\"%s\": a force has no motion", text);
     }
     return spring || damper ? find_spring(sys, name, mem, damper, out, err)
-                            : find_joint_port(sys, name, mem, out, err);
+                            : find_joint_port(sys, name, false, mem, out, err);
+}
+
+mt_status mt_port_at_rest(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
+                          mt_err *err)
+{
+    const char *const colon = strchr(text, ':');
+    if (colon != NULL) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\": at rest nothing has a %s", text, colon + 1);
+    }
+    if (begins(text, WITH_FORCE[1])) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\": a damper carries nothing at rest", text);
+    }
+    return begins(text, JOINT) && mt_system_find_channel(sys, text) < 0
+               ? find_joint_port(sys, text, true, mem, out, err)
+               : mt_port_output(sys, text, mem, out, err);
 }

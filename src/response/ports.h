@@ -32,7 +32,8 @@ typedef struct mt_port {
     mt_port_kind kind;
     /* index in the system of the channel, ground axis, spring, damper or joint */
     int index;
-    /* axis of a joint's force; component of a bushing's (3 ... 5: moments), or -1 */
+    /* axis of a joint's force, at rest also of its moment (3 ... 5) or MT_PORT_HOLD; component
+     * of a bushing's (3 ... 5: moments), or -1 */
     int axis;
     int motion;       /* derivative in time: 0 displacement, 1 velocity, 2 acceleration */
     bool relative;    /* of a sensor: relative to the ground */
@@ -40,6 +41,9 @@ typedef struct mt_port {
     const char *name; /* full name, such as "grip.x:acceleration" */
     const char *unit; /* "m/s^2" */
 } mt_port;
+
+/* Of a joint at rest: what holds it at its driven position. */
+enum { MT_PORT_HOLD = 6 };
 
 /* The ports of one response. */
 typedef struct mt_port_set {
@@ -59,5 +63,12 @@ mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, m
                         mt_err *err);
 mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
                          mt_err *err);
+/*
+ * What there is at rest (mechanics/statics.h): a sensor's displacement, a spring's force, and
+ * of joints also moments, "joint.NAME.rx" (in the plane "joint.NAME.rz"), and what holds a
+ * driven one, "joint.NAME.hold". The same failures; MT_E_USAGE for a motion or a damper.
+ */
+mt_status mt_port_at_rest(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
+                          mt_err *err);
 
 #endif

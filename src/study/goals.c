@@ -95,6 +95,9 @@ const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
     if (goal->response_limit != NULL) {
         return goal->response_limit->unit;
     }
+    if (goal->static_limit != NULL) {
+        return goal->static_limit->unit;
+    }
     return other != NULL ? other->si : mt_goal_kind_of(goal->type)->unit;
 }
 
@@ -245,7 +248,9 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     if (mt_goal_has(kind, "bands_hz")) {
         mt_study_check_avoid(c, goal);
     }
-    if (mt_goal_has(kind, "output")) {
+    if (mt_goal_has(kind, "against")) {
+        mt_study_check_static(c, goal);
+    } else if (mt_goal_has(kind, "output")) {
         mt_study_check_response_limit(c, goal);
     }
     if (mt_goal_has(kind, "mode")) {

@@ -22,6 +22,7 @@
     X(RESPONSE, response, "", RATIO)                          \
     X(VIBRATION, vibration, "", RATIO)                        \
     X(FREQUENCY_RESPONSE, frequency_response, "", DIFFERENCE) \
+    X(STATIC, static, "", PART)                               \
     X(LIMIT, limit, "", PART)                                 \
     X(AVOID, avoid, "Hz", RATIO)
 #define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,
@@ -80,6 +81,7 @@ typedef struct mt_goal {
     mt_avoid *avoid; /* of avoid goals, in the study's arena; else NULL */
     /* of goals about ports, in the study's arena; else NULL */
     mt_response_limit *response_limit;
+    mt_static_limit *static_limit; /* of goals about rest, in the study's arena; else NULL */
     const char *description;
     mt_addr addr;
 } mt_goal;
@@ -128,6 +130,7 @@ typedef struct mt_goal_parts {
     mt_goal goal;
     mt_avoid avoid;
     mt_response_limit response_limit;
+    mt_static_limit static_limit;
 } mt_goal_parts;
 
 #define MT_GOAL_ROWS(tolerance)                                                           \

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Forced vibration between ports: the goals about it, and the responses that results show. The
- * profile is a file beside the study or one that is part of the program. Names of ports are
- * looked up where the mechanism is known (response/ports.h); their units follow from the names
- * alone.
+ * Goals about ports: forced vibration between them, what there is at rest, and the responses
+ * that results show. The profile is a file beside the study or one that is part of the program.
+ * Names of ports are looked up where the mechanism is known (response/ports.h); their units
+ * follow from the names alone.
  */
 #include "study/response_limit.h"
 
@@ -368,6 +368,80 @@ const mt_key_table mt_goal_frequency_response_keys = {
             "1/N of the weight.",
     .rules = MT_GOAL_ONE_OR_SEVERAL};
 
+/* "static" */
+
+static const char *const STATIC_QUANTITIES[] = {"compliance", "stiffness"};
+
+#define THIS mt_goal_parts
+static const mt_key STATIC[] = {
+    MT_GOAL_ROWS("The goal is met within this, in percent of the demand; of a demand of 0 in "
+                 "percent of the value at the original design."),
+    MT_GOAL_CONFIGURATION_ROWS,
+    MT_M_REF("output", true, static_limit.output,
+             "What is limited at rest: the displacement of a sensor along its direction from "
+             "the reference position, where nothing is loaded or driven (\"grip.z\" [m]; a "
+             "rotation \"grip.rz\" [rad]); the force of a spring, above 0 where it pulls "
+             "(\"spring.NAME\", of a bushing a component, \"spring.NAME.x\", "
+             "\"spring.NAME.rx\"); what a joint's first body does to its second, along global "
+             "axes: its force (\"joint.NAME.x\" [N]) and its moment about the joint's point "
+             "on the second body (\"joint.NAME.rx\" [N m]); what holds a driven joint that is "
+             "locked (\"joint.NAME.hold\").",
+             .examples = "[\"grip.z\", \"spring.front.z\", \"joint.pivot.rx\"]"),
+    MT_M_REF("input", false, static_limit.input,
+             "A force along the direction of a sensor (\"grip.z\"; \"grip.rz\" is a moment): "
+             "the goal is about what a small one of 1 changes at the equilibrium, by the "
+             "tangent stiffness, and the output is a displacement.",
+             .examples = "[\"grip.z\"]"),
+    MT_M_CHOICE("quantity", false, static_limit.quantity, mt_static_quantity, "quantity",
+                STATIC_QUANTITIES,
+                "With \"input\": \"compliance\", the displacement per force; \"stiffness\", "
+                "its reciprocal.",
+                .otherwise = "\"compliance\""),
+    MT_M_REF("against", false, static_limit.against_name,
+             "Another configuration of the model, whose value is subtracted: the goal is about "
+             "the difference."),
+    MT_S_NUMBER("target", false, goal.equals, ANY,
+                "Wanted value, in SI units; excludes the limits."),
+    MT_S_NUMBER("at_least", false, goal.at_least, LIMIT, "Lower limit, in SI units."),
+    MT_S_NUMBER("at_most", false, goal.at_most, LIMIT, "Upper limit, in SI units."),
+    MT_S_NUMBER("weight", false, goal.weight, POSITIVE,
+                "With a weight the goal is a residual of the objective \"misfit\", (value - "
+                "target)/|target|, instead of a constraint."),
+};
+#undef THIS
+
+static void static_defaults(void *item, mt_addr addr, int which)
+{
+    (void)addr;
+    (void)which;
+    ((mt_goal_parts *)item)->static_limit = (mt_static_limit){.against = MT_ABSENT, .unit = ""};
+}
+
+static void static_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_goal_parts *const parts = item;
+    mt_goal_finish(r, o, which, item);
+    if (mt_object_has(r, o, "quantity") && !mt_object_has(r, o, "input")) {
+        mt_diag_structure(r->diags, mt_object_place(r, o, "quantity"),
+                          "\"quantity\" goes with \"input\"");
+    }
+    parts->goal.static_limit = mt_arena_alloc(r->mem, 1, sizeof parts->static_limit);
+    if (parts->goal.static_limit != NULL) {
+        *parts->goal.static_limit = parts->static_limit;
+    }
+}
+
+const mt_key_table mt_goal_static_keys = {
+    .what = "goal_static",
+    .keys = STATIC,
+    .n = MT_COUNT(STATIC),
+    .defaults = static_defaults,
+    .check = mt_goal_check,
+    .finish = static_finish,
+    .says = "A displacement or a force of the mechanism at rest, under gravity, preload and "
+            "loads: at a target, or within limits. No proof covers it.",
+    .rules = "\"dependencies\": {\"quantity\": [\"input\"]}, " MT_GOAL_ONE_OR_SEVERAL};
+
 /* Responses that results show */
 
 static void response_defaults(void *item, mt_addr addr, int which)
@@ -602,6 +676,58 @@ void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal)
     }
     if (s->input.s != NULL && s->output.s != NULL) {
         find_unit(c, s);
+    }
+}
+
+/* Unit of what "joint.NAME.COMPONENT" has at rest; NULL: not known. */
+static const char *joint_unit(const mt_model *m, const char *port)
+{
+    static const char hold[] = ".hold";
+    const char *const dot = strrchr(port, '.');
+    if (strcmp(dot, hold) != 0) {
+        return turns(port) ? "N m" : "N";
+    }
+    for (int i = 0; i < m->n_joints; i++) {
+        const char *const name = m->joints[i].name.s;
+        if (strlen(name) == (size_t)(dot - port) && strncmp(name, port, strlen(name)) == 0) {
+            return mt_joint_kind_of(m->joints[i].type)->coordinate == MT_COORDINATE_DISPLACEMENT
+                       ? "N"
+                       : "N m";
+        }
+    }
+    return "N m"; /* the hinge of a link */
+}
+
+static const char *static_unit(const mt_model *m, const char *port)
+{
+    static const char joint[] = "joint.";
+    return begins(port, joint) ? joint_unit(m, port + strlen(joint)) : output_unit(m, port);
+}
+
+void mt_study_check_static(mt_study_check *c, mt_goal *goal)
+{
+    mt_static_limit *const s = goal->static_limit;
+    if (s == NULL) {
+        return; /* memory is out */
+    }
+    if (s->against_name.s != NULL) {
+        s->against = mt_check_configuration(c, c->model, s->against_name);
+    }
+    for (int i = 0; i < goal->n_configurations && s->against != MT_ABSENT; i++) {
+        if (goal->configurations[i] == s->against) {
+            mt_diag_error(c->diags, s->against_name.addr,
+                          "\"%s\" is the goal's own configuration: the difference is always 0",
+                          s->against_name.s);
+        }
+    }
+    const char *const out = s->output.s == NULL ? NULL : static_unit(c->model, s->output.s);
+    if (out != NULL && s->input.s != NULL) {
+        const char *const in = input_unit(s->input.s);
+        s->unit = s->quantity == MT_STATIC_STIFFNESS
+                      ? mt_arena_printf(&c->study->mem, "%s per %s", in, out)
+                      : mt_arena_printf(&c->study->mem, "%s per %s", out, in);
+    } else if (out != NULL) {
+        s->unit = out;
     }
 }
 

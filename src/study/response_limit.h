@@ -32,6 +32,23 @@ typedef struct mt_response_limit {
     bool coherence;  /* lines are weighted by their coherence */
 } mt_response_limit;
 
+/* What of a unit load a static goal limits. */
+typedef enum mt_static_quantity {
+    MT_STATIC_COMPLIANCE,
+    MT_STATIC_STIFFNESS
+} mt_static_quantity;
+
+/* What a goal limits of a mechanism at rest: a displacement or a force at the equilibrium, or
+ * what a small unit load changes there. */
+typedef struct mt_static_limit {
+    mt_name output; /* response/ports.h: mt_port_at_rest */
+    mt_name input;  /* s NULL: none, the equilibrium as it is */
+    mt_static_quantity quantity;
+    mt_name against_name; /* s NULL: none */
+    int against;          /* configuration whose value is subtracted; MT_ABSENT: none */
+    const char *unit;     /* of its number; "": not known */
+} mt_static_limit;
+
 /* A profile of vibration that goals name. */
 typedef struct mt_study_profile {
     mt_name name;
@@ -54,6 +71,8 @@ struct mt_goal;
 struct mt_study_check;
 /* Check frequencies, profile and measurement of a goal about ports, and find its unit. */
 void mt_study_check_response_limit(struct mt_study_check *c, struct mt_goal *goal);
+/* Check the other configuration of a goal about rest, and find its unit. */
+void mt_study_check_static(struct mt_study_check *c, struct mt_goal *goal);
 void mt_study_check_responses(struct mt_study_check *c);
 
 #endif

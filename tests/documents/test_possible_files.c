@@ -59,6 +59,8 @@ static const struct beside {
     {"goal_frequency", "at_most_hz", 0, MT_SEVERITY_ERROR, "0.05", "0.2", "is not above"},
     {"goal_limit", "at_least", 0, MT_SEVERITY_ERROR, "8", "6", "is not above"},
     {"goal_limit", "at_most", 0, MT_SEVERITY_ERROR, "0", "2", "is not above"},
+    {"goal_static", "at_least", 0, MT_SEVERITY_ERROR, "8", "-1", "is not above"},
+    {"goal_static", "at_most", 0, MT_SEVERITY_ERROR, "-4", "2", "is not above"},
     {"published", "at_least", 0, MT_SEVERITY_ERROR, "4", "2", "is below at_least"},
     {"published", "at_most", 0, MT_SEVERITY_ERROR, "0", "2", "is below at_least"},
     {"goal_response", "band_hz", 1, MT_SEVERITY_ERROR, "1", "3", "ascending"},

@@ -308,6 +308,50 @@ static void shaken_objective__has_an_exact_gradient(mt_test *t)
     compiled_free(&s);
 }
 
+/* What loops under load do at rest: motions, forces of springs and joints, a locked and a
+ * trimmed drive, differences of configurations, compliances. */
+static void goals_at_rest__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "four_bar",
+                "'variables': [{'parameter': 'a', 'lower': 0.1, 'upper': 0.2},"
+                " {'parameter': 'm_c', 'lower': 1, 'upper': 4},"
+                " {'parameter': 'k', 'lower': 10, 'upper': 40},"
+                " {'parameter': 'alpha', 'lower': 0.5, 'upper': 2}],"
+                "'goals': ["
+                "{'type': 'static', 'configurations': ['loaded', 'trimmed'],"
+                " 'output': 'tip.y', 'at_least': -0.02},"
+                "{'type': 'static', 'configuration': 'loaded', 'output': 'crank.r',"
+                " 'target': -0.1, 'weight': 2},"
+                "{'type': 'static', 'configurations': ['loaded', 'locked'],"
+                " 'output': 'spring.coil', 'at_most': 0.5, 'at_least': 0},"
+                "{'type': 'static', 'configurations': ['loaded', 'locked', 'trimmed'],"
+                " 'output': 'joint.jB.x', 'at_most': 9},"
+                "{'type': 'static', 'configuration': 'locked', 'output': 'joint.jA.rz',"
+                " 'at_most': 3},"
+                "{'type': 'static', 'configuration': 'locked', 'output': 'joint.jA.hold',"
+                " 'target': 3},"
+                "{'type': 'static', 'configuration': 'trimmed', 'output': 'spring.servo',"
+                " 'at_most': 3},"
+                "{'type': 'static', 'configuration': 'trimmed', 'output': 'joint.jD.y',"
+                " 'against': 'loaded', 'at_most': 3},"
+                "{'type': 'static', 'configuration': 'loaded', 'output': 'tip.y',"
+                " 'input': 'tip.x', 'at_most': 3},"
+                "{'type': 'static', 'configuration': 'still', 'output': 'tip.y',"
+                " 'input': 'tip.y', 'target': 1, 'weight': 0.5},"
+                "{'type': 'static', 'configuration': 'loaded', 'output': 'crank.r',"
+                " 'input': 'crank.r', 'quantity': 'stiffness', 'at_least': 3}],"
+                "'objective': {'minimise': 'misfit'}",
+                &s)) {
+        double at[4] = {log(0.16), log(2.3), log(22.0), log(1.1)};
+        CHECK_INT(t, s.p->whole.rows.eq.n, 1);
+        CHECK_INT(t, s.p->whole.rows.res.n, 2);
+        CHECK_INT(t, s.p->whole.rows.of_kind[MT_ROW_GOAL].n, 14);
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
 /* Logarithms of responses over measured ones, magnitude and phase, through loops under load. */
 static void measured_responses__have_exact_gradients(mt_test *t)
 {
@@ -338,6 +382,7 @@ static void measured_responses__have_exact_gradients(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
              MT_TEST(shaken_goals__have_exact_gradients),
+             MT_TEST(goals_at_rest__have_exact_gradients),
              MT_TEST(measured_responses__have_exact_gradients),
              MT_TEST(shaken_objective__has_an_exact_gradient),
              MT_TEST(named_and_repeated_modes__have_exact_gradients))

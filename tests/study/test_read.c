@@ -122,6 +122,27 @@ static void check_other_goals(mt_test *t, const mt_study *s)
     CHECK_INT(t, g[0].reference, MT_ABSENT);
 }
 
+static void check_at_rest(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = &s->goals[8];
+    CHECK_INT(t, g->type, MT_GOAL_STATIC);
+    if (CHECK(t, g->static_limit != NULL)) {
+        CHECK_STR(t, g->static_limit->output.s, "s2.r");
+        CHECK_STR(t, g->static_limit->input.s, "s2.x");
+        CHECK_INT(t, g->static_limit->quantity, MT_STATIC_STIFFNESS);
+        CHECK_INT(t, g->static_limit->against, 0);
+        CHECK_STR(t, g->static_limit->unit, "N per rad");
+    }
+    CHECK_NEAR(t, g->equals, 1.0 / 3.0, TOL);
+    CHECK_NEAR(t, g->weight, 4.0, TOL);
+    if (CHECK(t, g[1].static_limit != NULL)) {
+        CHECK_STR(t, g[1].static_limit->unit, "N m");
+        CHECK(t, g[1].static_limit->input.s == NULL);
+        CHECK_INT(t, g[1].static_limit->against, MT_ABSENT);
+    }
+    CHECK_NEAR(t, g[1].at_least, -2.0, TOL);
+}
+
 static void check_measured(mt_test *t, const mt_study *s)
 {
     const mt_goal *const g = &s->goals[7];
@@ -218,10 +239,11 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.max_modal_solutions, 90000);
     CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
     CHECK_NEAR(t, s->weight_sensitivity.factor, 4.0, 0.0);
-    if (CHECK_INT(t, s->n_goals, 8)) {
+    if (CHECK_INT(t, s->n_goals, 10)) {
         check_frequency_goals(t, s);
         check_other_goals(t, s);
         check_measured(t, s);
+        check_at_rest(t, s);
     }
     check_variables(t, s);
     check_references(t, s);

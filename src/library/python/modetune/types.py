@@ -862,6 +862,30 @@ class StudyGoalFrequencyResponse(_StudyGoalFrequencyResponseAlways, total=False)
     coherence: bool
 
 
+class _StudyGoalStaticAlways(TypedDict):
+    type: Literal["static"]
+    output: str
+
+
+class StudyGoalStatic(_StudyGoalStaticAlways, total=False):
+    """A displacement or a force of the mechanism at rest, under gravity, preload and loads: at
+    a target, or within limits. No proof covers it.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    input: str
+    quantity: Literal["compliance", "stiffness"]
+    against: str
+    target: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    weight: "StudyNumber"
+
+
 class _StudyGoalLimitAlways(TypedDict):
     type: Literal["limit"]
     expression: str
@@ -1320,7 +1344,7 @@ class _ResultGoalAlways(TypedDict):
     pointer: str
     type: Literal[
         "frequency", "shape", "mac", "damping", "response", "vibration", "frequency_response",
-        "limit", "avoid"
+        "static", "limit", "avoid"
     ]
     configuration: Optional[str]
     mode: Optional[int]
@@ -2801,8 +2825,8 @@ StudyMode = Union[int, str]
 StudyPair = List["StudyNumber"]
 StudyGoal = Union[
     "StudyGoalFrequency", "StudyGoalShape", "StudyGoalMac", "StudyGoalDamping",
-    "StudyGoalResponse", "StudyGoalVibration", "StudyGoalFrequencyResponse", "StudyGoalLimit",
-    "StudyGoalAvoid"
+    "StudyGoalResponse", "StudyGoalVibration", "StudyGoalFrequencyResponse", "StudyGoalStatic",
+    "StudyGoalLimit", "StudyGoalAvoid"
 ]
 ProfilePair = List[float]
 ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
