@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Vibrations under a profile as tables and text. */
 #include "cli/vibrated.h"
 
 #include <math.h>
@@ -7,17 +8,6 @@
 static const double TWO_PI = 6.28318530717958647693;
 
 enum { DIGITS = 5, HZ_DIGITS = 6, BOUND_DIGITS = 2 };
-
-/* "m/s^2" of a response is in g as well. */
-static double in_g(const mt_vibrated *v, double value)
-{
-    return v->is_acceleration ? value / MT_STANDARD_GRAVITY : nan("");
-}
-
-static const char *vibrated_unit(const mt_vibrated *v)
-{
-    return v->is_acceleration ? "m/s^2" : v->unit;
-}
 
 /* The text in place of a missing number. */
 static const char *end_of(const mt_vibration_response *r)
@@ -44,14 +34,14 @@ void mt_vibrated_row(mt_table *t, const mt_vibrated *v)
     const bool random = v->profile->n_random > 0;
     const bool tones = v->profile->n_tones > 0;
     const double none = nan("");
-    mt_table_number(t, random ? in_g(v, r->rms) : none, DIGITS);
-    mt_table_number(t, tones ? in_g(v, r->sine) : none, DIGITS);
-    mt_table_number(t, in_g(v, r->peak), DIGITS);
+    mt_table_number(t, random ? mt_vibrated_in_g(v, r->rms) : none, DIGITS);
+    mt_table_number(t, tones ? mt_vibrated_in_g(v, r->sine) : none, DIGITS);
+    mt_table_number(t, mt_vibrated_in_g(v, r->peak), DIGITS);
     mt_table_number(t, random ? r->rms : none, DIGITS);
     mt_table_number(t, random ? r->rms_bound : none, BOUND_DIGITS);
     mt_table_number(t, tones ? r->sine : none, DIGITS);
     mt_table_number(t, r->peak, DIGITS);
-    mt_table_text(t, vibrated_unit(v));
+    mt_table_text(t, mt_vibrated_unit(v));
     mt_table_text(t, end_of(r));
 }
 
@@ -79,86 +69,11 @@ void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone)
     const double value = mt_vibration_respond_tone(v->profile, v->response, tone);
     mt_table_text(t, v->profile->tones[tone].label);
     mt_table_number(t, p->omega / TWO_PI, HZ_DIGITS);
-    mt_table_number(t, in_g(v, value), DIGITS);
+    mt_table_number(t, mt_vibrated_in_g(v, value), DIGITS);
     mt_table_number(t, value, DIGITS);
     mt_table_number(t, p->excess, BOUND_DIGITS);
-    mt_table_text(t, vibrated_unit(v));
+    mt_table_text(t, mt_vibrated_unit(v));
     mt_table_text(t, where(p));
-}
-
-#define THIS mt_vibrated_tone
-static const mt_field tone_fields[] = {
-    MT_F_TEXT("tone", tone, "Its name."),
-    MT_F_ENUM("end", end, mt_forced_end, mt_forced_end_names,
-              "Why there is no finite number; \"finite\": there is one."),
-    MT_F_NUMBER_OR_NULL("frequency_hz", frequency_hz,
-                        "Where in its range the response is largest."),
-    MT_F_NUMBER_OR_NULL("peak", peak, "Peak there, in the unit of the response."),
-    MT_F_NUMBER_OR_NULL("excess_at_most", excess_at_most,
-                        "Part of the peak by which it may be larger elsewhere in the range."),
-    MT_F_FLAG("at_edge", at_edge, "It is largest at an end of the range."),
-};
-const mt_record mt_vibrated_tone_record =
-    MT_F_RECORD_OF(tone_fields, "vibrated_tone", "The response to one tone.");
-#undef THIS
-
-#define THIS mt_combine_row
-static const mt_field combine_fields[] = {
-    MT_F_NUMBER("sigma", sigma, "Peak of the random parts, in their RMS."),
-    MT_F_ENUM("tones", tones, mt_vibration_sum, mt_vibration_sum_names,
-              "How the peaks of the tones add up."),
-};
-const mt_record mt_combine_record =
-    MT_F_RECORD_OF(combine_fields, NULL, "How the peak follows from the parts.");
-#undef THIS
-
-mt_rule_row mt_rule_row_of(const mt_vibration *v)
-{
-    return (mt_rule_row){.combine = {.sigma = v->sigma, .tones = v->rule},
-                         .marks = v->marks,
-                         .n_marks = v->n_marks};
-}
-
-mt_status mt_vibrated_values_of(const mt_vibrated *v, mt_arena *mem, mt_vibrated_values *out,
-                                mt_err *err)
-{
-    const mt_vibration_response *const r = v->response;
-    *out = (mt_vibrated_values){
-        .end = r->end,
-        .unit = vibrated_unit(v),
-        .rms = r->rms,
-        .rms_error_at_most = r->rms_bound,
-        .sine = r->sine,
-        .peak = r->peak,
-        .in_g = v->is_acceleration,
-        .rms_g = in_g(v, r->rms),
-        .sine_g = in_g(v, r->sine),
-        .peak_g = in_g(v, r->peak),
-        .tones = mt_arena_alloc(mem, (size_t)r->n_tones, sizeof *out->tones),
-    };
-    for (int i = 0; i < r->n_tones && out->tones != NULL; i++) {
-        const mt_sine_peak *const p = &r->tones[i];
-        out->tones[out->n_tones++] = (mt_vibrated_tone){
-            .tone = v->profile->tones[i].label,
-            .end = p->end,
-            .frequency_hz = p->omega / TWO_PI,
-            .peak = mt_vibration_respond_tone(v->profile, r, i),
-            .excess_at_most = p->excess,
-            .at_edge = p->at_edge,
-        };
-    }
-    return mt_arena_check(mem, err);
-}
-
-const char *mt_vibrated_axis(const mt_vibration *v)
-{
-    static const char *const names[] = {"x", "y", "z"};
-    return v->axis == MT_ABSENT ? NULL : names[v->axis];
-}
-
-const char *mt_vibrated_name(const mt_vibration *v)
-{
-    return v->name == NULL ? v->path : v->name;
 }
 
 void mt_vibrated_rule(const mt_vibration *v, mt_text *out)
@@ -180,4 +95,109 @@ void mt_vibrated_marks(const mt_vibration *v, mt_text *out)
         mt_text_addf(out, "  - %s\n", v->marks[i]);
     }
     mt_text_add(out, v->n_marks > 0 ? "\n" : "");
+}
+
+/* Of a response. */
+
+/* Columns that identify the pair, before its values. */
+static void pair_columns(const mt_response_view *v, mt_table *t)
+{
+    if (v->response.ports.n_in > 1) {
+        mt_table_column(t, "input", "input", MT_ALIGN_LEFT);
+    }
+    mt_table_column(t, "output", "output", MT_ALIGN_LEFT);
+}
+
+static void pair_cells(const mt_response_view *v, int pair, mt_table *t)
+{
+    if (v->response.ports.n_in > 1) {
+        mt_table_text(t, mt_response_view_input(v, pair)->name);
+    }
+    mt_table_text(t, mt_response_view_output(v, pair)->name);
+}
+
+static void print_rows(const mt_response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    pair_columns(v, &t);
+    mt_vibrated_columns(&t);
+    for (int p = 0; p < v->profiled.n_pairs; p++) {
+        const mt_vibrated row = mt_response_view_vibrated(v, p);
+        pair_cells(v, p, &t);
+        mt_vibrated_row(&t, &row);
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_text_add(out, "\n");
+    mt_table_free(&t);
+}
+
+static void print_tones(const mt_response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    pair_columns(v, &t);
+    mt_vibrated_tone_columns(&t);
+    for (int p = 0; p < v->profiled.n_pairs; p++) {
+        const mt_vibrated row = mt_response_view_vibrated(v, p);
+        for (int i = 0; i < v->question->profile->n_tones; i++) {
+            pair_cells(v, p, &t);
+            mt_vibrated_tone_row(&t, &row, i);
+        }
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_text_add(out, v->profiled.no_sums == NULL
+                         ? "  Each is the largest within its range, proven up to that part of "
+                           "it.\n\n"
+                         : "\n");
+    mt_table_free(&t);
+}
+
+/* Print the reason for a pair without a value; *said: the pole named last, so that pairs with
+ * the same pole are reported once. */
+static void print_end(const mt_response_view *v, int pair, int *said, mt_text *out)
+{
+    const mt_vibration_response *const a = &v->profiled.answers[pair];
+    if (a->end == MT_FORCED_FINITE || a->pole < 0 || a->pole == *said) {
+        return;
+    }
+    const double complex pole = v->profiled.poles[a->pole];
+    const int mode = mt_response_view_mode(v, pole);
+    const char *const name =
+        mode > 0 ? mt_mode_name(v->s, v->response.sys->configuration, mode) : NULL;
+    *said = a->pole;
+    mt_text_addf(out, "  Vibration mode %d%s%s%s, %.6g Hz, ", mode, name == NULL ? "" : " \"",
+                 name == NULL ? "" : name, name == NULL ? "" : "\"", cabs(pole) / TWO_PI);
+    mt_text_add(out, a->end == MT_FORCED_INFINITE
+                         ? "has no damping, and the profile acts there: what it shakes is "
+                           "infinite.\n"
+                         : "grows by itself: there is no steady response.\n");
+}
+
+void mt_vibrated_print(const mt_response_view *v, mt_text *out)
+{
+    const mt_vibration *const p = v->profiled.v;
+    const char *const axis = mt_vibrated_axis(p);
+    int said = -1;
+    mt_text_addf(out, "  Under %s%s%s", mt_vibrated_name(p), axis == NULL ? "" : ", along ",
+                 axis == NULL ? "" : axis);
+    if (p->n_random > 0) {
+        mt_text_addf(out, " (%.5g g RMS)", mt_vibration_rms(p) / MT_STANDARD_GRAVITY);
+    }
+    mt_text_add(out, "; ");
+    mt_vibrated_rule(p, out);
+    mt_text_add(out, ":\n");
+    print_rows(v, out);
+    for (int k = 0; k < v->profiled.n_pairs; k++) {
+        print_end(v, k, &said, out);
+    }
+    mt_text_add(out, said >= 0 ? "\n" : "");
+    if (p->n_tones > 0) {
+        print_tones(v, out);
+    }
+    if (v->profiled.no_sums != NULL) {
+        mt_text_addf(out,
+                     "  %s. The numbers are therefore by quadrature: errors are estimates, and "
+                     "of tones nothing is proven.\n\n",
+                     v->profiled.no_sums);
+    }
+    mt_vibrated_marks(p, out);
 }
