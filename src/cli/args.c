@@ -108,6 +108,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_POLES, '\0', "poles", NULL, BIT(MT_CMD_RESPONSE),
            "poles and residues, of which every response is the sum: H(s) = sum of residue/(s - "
            "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (text: the poles alone)"),
+    OPTION(
+        MT_OPT_STATE_SPACE, '\0', "state-space", "FILE", BIT(MT_CMD_RESPONSE),
+        "also write the mechanism between the ports as x' = A x + B u, y = C x + D u: of the "
+        "modes up to --to (or of --modes N), with what the others do at rest as residual "
+        "shapes. FILE.json: a record; FILE.csv: a table of A, B above C, D; FILE.mtx: Matrix "
+        "Market files FILE_A.mtx to FILE_D.mtx. Of one configuration"),
     OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
            "change of every peak and antiresonance for 1 % more of these parameters"),
     OPTION(MT_OPT_VIBRATION, '\0', "vibration", "PROFILE",

@@ -36,6 +36,7 @@ typedef enum mt_option_id {
     MT_OPT_KEEP,
     MT_OPT_DIRECT,
     MT_OPT_POLES,
+    MT_OPT_STATE_SPACE,
     MT_OPT_SENSITIVITY,
     MT_OPT_VIBRATION,
     MT_OPT_DURATION,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune response: how forces and a moving ground shake a mechanism. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/format.h"
@@ -8,7 +10,9 @@
 #include "cli/shipped.h"
 #include "cli/vibrated.h"
 #include "inspect/response.h"
+#include "io/folder.h"
 #include "report/table.h"
+#include "result/write.h"
 
 enum { DIGITS = 5 };
 
@@ -153,6 +157,166 @@ static void print_poles(const mt_response_view *v, mt_text *out)
     mt_table_free(&t);
 }
 
+/* The state space. */
+
+static void print_state_space(const mt_state_space_row *s, mt_text *out)
+{
+    mt_text_addf(out, "\n  State space: %d states of %d mode%s", s->n_states, s->modes,
+                 s->modes == 1 ? "" : "s");
+    if (s->residual_shapes > 0) {
+        mt_text_addf(out, " and %d residual shape%s, for what the other modes do at rest",
+                     s->residual_shapes, s->residual_shapes == 1 ? "" : "s");
+    }
+    mt_text_add(out, ".\n");
+    if (!isnan(s->largest_difference_percent)) {
+        mt_text_addf(out,
+                     "  It differs from the response of all modes by at most %.2g %% at %d "
+                     "frequencies from %.6g to %.6g Hz\n  (in percent of the magnitude, or of "
+                     "its median where that is more).\n",
+                     s->largest_difference_percent, s->compared, s->from_hz, s->to_hz);
+    }
+    if (s->viscous_for_loss_factors) {
+        mt_text_add(out,
+                    "  Loss factors stand as the viscous damping that takes as much energy "
+                    "from each mode at its own frequency.\n");
+    }
+}
+
+/* A, B above C, D, with the names of states and ports. */
+static void state_space_csv(const mt_state_space_row *s, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "row", "row", MT_ALIGN_LEFT);
+    for (int i = 0; i < s->n_states + s->n_inputs; i++) {
+        const char *const name =
+            i < s->n_states ? s->states[i] : s->inputs[i - s->n_states].name;
+        mt_table_column(&t, name, name, MT_ALIGN_RIGHT);
+    }
+    for (int i = 0; i < s->n_states + s->n_outputs; i++) {
+        const bool state = i < s->n_states;
+        const mt_matrix_row *const left = state ? &s->a[i] : &s->c[i - s->n_states];
+        const mt_matrix_row *const right = state ? &s->b[i] : &s->d[i - s->n_states];
+        mt_table_text(&t, state ? s->states[i] : s->outputs[i - s->n_states].name);
+        for (ptrdiff_t k = 0; k < left->n; k++) {
+            mt_table_number(&t, left->value[k * left->step], 17);
+        }
+        for (ptrdiff_t k = 0; k < right->n; k++) {
+            mt_table_number(&t, right->value[k * right->step], 17);
+        }
+    }
+    mt_table_csv(&t, out);
+    mt_table_free(&t);
+}
+
+/* Dense, by columns (Boisvert, Pozo and Remington, NISTIR 5935, 1996). */
+static void matrix_market(const mt_matrix_row *rows, int m, int n, mt_text *out)
+{
+    char number[MT_JSON_NUMBER_SIZE];
+    mt_text_addf(out, "%%%%MatrixMarket matrix array real general\n%d %d\n", m, n);
+    for (ptrdiff_t j = 0; j < n; j++) {
+        for (int i = 0; i < m; i++) {
+            mt_text_addf(out, "%s\n",
+                         mt_json_format_number(rows[i].value[j * rows[i].step], number));
+        }
+    }
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+    const size_t n = strlen(text);
+    const size_t m = strlen(end);
+    return n > m && strcmp(text + n - m, end) == 0;
+}
+
+enum { MOST_FILES = 4 };
+
+/* The texts of the file, or files, by the ending of its name. Returns how many. */
+static int state_space_texts(const mt_state_space_row *s, const char *path,
+                             mt_text text[MOST_FILES])
+{
+    const struct {
+        const mt_matrix_row *rows;
+        int m;
+        int n;
+    } matrix[MOST_FILES] = {{s->a, s->n_states, s->n_states},
+                            {s->b, s->n_states, s->n_inputs},
+                            {s->c, s->n_outputs, s->n_states},
+                            {s->d, s->n_outputs, s->n_inputs}};
+    if (ends_with(path, ".json")) {
+        mt_json_writer w = mt_json_writer_default(text);
+        mt_record_put_object(&w, NULL, &mt_state_space_record, s, 0, NULL);
+        text->failed = !mt_json_done(&w) || text->failed;
+        return 1;
+    }
+    if (ends_with(path, ".csv")) {
+        state_space_csv(s, text);
+        return 1;
+    }
+    for (int i = 0; i < MOST_FILES; i++) {
+        matrix_market(matrix[i].rows, matrix[i].m, matrix[i].n, &text[i]);
+    }
+    return MOST_FILES;
+}
+
+/* A state space is of one configuration, in one of three forms. */
+static mt_status admit_state_space(const mt_args *args, const mt_loaded_model *s, mt_err *err)
+{
+    const char *const path = args->value[MT_OPT_STATE_SPACE];
+    if (path == NULL) {
+        return MT_OK;
+    }
+    if (s->n_configurations != 1) {
+        return mt_fail(
+            err, MT_E_USAGE,
+            "--state-space: it is of one configuration, and the model has %d: choose "
+            "one by -c",
+            s->n_configurations);
+    }
+    if (strlen(mt_text_base_name(path)) + 2 >= MT_FOLDER_NAME) {
+        return mt_fail(err, MT_E_USAGE, "--state-space: the name \"%s\" is too long",
+                       mt_text_base_name(path));
+    }
+    return ends_with(path, ".json") || ends_with(path, ".csv") || ends_with(path, ".mtx")
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE,
+                         "--state-space: the name of the file ends with .json, .csv or .mtx, "
+                         "which says its form");
+}
+
+/* Writes the file, or files, all or none. */
+static mt_status save_state_space(const mt_response_view *v, const mt_args *args, mt_err *err)
+{
+    const char *const path = args->value[MT_OPT_STATE_SPACE];
+    const char *const name = mt_text_base_name(path);
+    const int stem = (int)strlen(name) - (int)strlen(".mtx");
+    mt_text text[MOST_FILES] = {{.s = NULL}};
+    char names[MOST_FILES][MT_FOLDER_NAME];
+    mt_folder_file files[MOST_FILES];
+    char *const folder = mt_file_folder(path);
+    const int n = state_space_texts(&v->space, path, text);
+    bool failed = folder == NULL;
+    for (int i = 0; i < n; i++) {
+        failed = failed || text[i].failed;
+        if (n == 1) {
+            (void)snprintf(names[i], sizeof names[i], "%s", name);
+        } else {
+            (void)snprintf(names[i], sizeof names[i], "%.*s_%c.mtx", stem, name, 'A' + i);
+        }
+        files[i] = (mt_folder_file){names[i], text[i].s, text[i].length};
+    }
+    const mt_status rc =
+        failed ? mt_fail_memory(err) : mt_folder_replace(folder, files, n, err);
+    if (rc == MT_OK) {
+        mt_terminal_talk(args->given[MT_OPT_QUIET], "%s: state space written to %s%s",
+                         v->configuration, path, n == 1 ? "" : " (_A, _B, _C, _D)");
+    }
+    for (int i = 0; i < MOST_FILES; i++) {
+        mt_text_free(&text[i]);
+    }
+    free(folder);
+    return rc;
+}
+
 static void response_print(const mt_response_view *v, mt_text *out)
 {
     bool infinite = false;
@@ -174,6 +338,9 @@ static void response_print(const mt_response_view *v, mt_text *out)
     }
     print_poles(v, out);
     print_method(v, out);
+    if (v->question->state_space) {
+        print_state_space(&v->space, out);
+    }
     if (infinite) {
         mt_text_add(out,
                     "  Resonances that nothing damps have no magnitude: it is infinite.\n");
@@ -305,6 +472,9 @@ static mt_status show_configuration_response(void *context, mt_loaded_model *s, 
             break;
         }
     }
+    if (rc == MT_OK && v.question->state_space) {
+        rc = save_state_space(&v, to->args, err);
+    }
     mt_response_view_free(&v);
     return rc;
 }
@@ -322,6 +492,7 @@ static mt_response_question question_of(const mt_args *args)
                                   .keep = args->keep,
                                   .direct = args->given[MT_OPT_DIRECT],
                                   .poles = args->given[MT_OPT_POLES],
+                                  .state_space = args->given[MT_OPT_STATE_SPACE],
                                   .parameters = args->value[MT_OPT_SENSITIVITY]};
 }
 
@@ -352,6 +523,11 @@ static int run_response(const mt_args *args, mt_text *out)
     int code =
         mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     code = code == MT_EXIT_DONE ? load_response_profile(&to) : code;
+    if (code == MT_EXIT_DONE) {
+        mt_err err = {.code = MT_OK};
+        const mt_status rc = admit_state_space(args, &s, &err);
+        code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
+    }
     if (code != MT_EXIT_DONE) {
         goto done;
     }

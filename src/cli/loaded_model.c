@@ -79,7 +79,7 @@ void mt_loaded_model_warn_overridden(const mt_loaded_model *s, int c)
     }
 }
 
-void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err)
+static void put_failed(mt_json_writer *w, const char *configuration, const mt_err *err)
 {
     const mt_failed_row row = {configuration, err->text};
     mt_record_put_object(w, NULL, &mt_failed_record, &row, 0, NULL);
@@ -115,7 +115,7 @@ int mt_cli_each(const mt_args *args, mt_loaded_model *s, mt_json_writer *w, mt_c
             code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         }
         if (rc != MT_OK && json) {
-            mt_cli_json_failed(w, mt_loaded_model_configuration(s, c), &err);
+            put_failed(w, mt_loaded_model_configuration(s, c), &err);
         }
     }
     if (list) {

@@ -25,8 +25,6 @@ void mt_loaded_model_note_links(const mt_loaded_model *s, int c, mt_text *out);
  * dropped: only one joint is driven. */
 void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *option,
                                   const char *joint);
-/* Write the record of a configuration without an answer. */
-void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err);
 /* Close a JSON output. Returns MT_EXIT_DONE, or reports a failure and returns its exit
  * status. */
 int mt_cli_json_done(mt_json_writer *w);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How forces, a moving ground and a profile of vibration shake one configuration, as records. */
+/* How forces, a moving ground and a profile of vibration shake a configuration, as records. */
 #include "inspect/response.h"
 
 #include <math.h>
@@ -251,7 +251,8 @@ static const mt_field port_fields[] = {
     MT_F_TEXT("name", name, "Its full name."),
     MT_F_TEXT("unit", unit, "Its unit."),
 };
-static const mt_record port_record = MT_F_RECORD_OF(port_fields, "port", "An input or output.");
+const mt_record mt_response_port_record =
+    MT_F_RECORD_OF(port_fields, "port", "An input or output.");
 #undef THIS
 
 #define THIS mt_complex_row
@@ -358,14 +359,20 @@ static const mt_field configuration_fields[] = {
         "\"poles\": its integrals are exact; \"quadrature\": errors are estimates, and of "
         "tones nothing is proven.",
         MT_F_WHEN(with_profile)),
-    MT_F_LIST("inputs", inputs, n_inputs, mt_port, port_record, "What shakes.", .flat = true),
-    MT_F_LIST("outputs", outputs, n_outputs, mt_port, port_record, "What is seen.",
+    MT_F_LIST("inputs", inputs, n_inputs, mt_port, mt_response_port_record, "What shakes.",
+              .flat = true),
+    MT_F_LIST("outputs", outputs, n_outputs, mt_port, mt_response_port_record, "What is seen.",
               .flat = true),
     MT_F_NUMBERS("frequencies_hz", frequencies_hz, n_frequencies,
                  "The frequencies: of the grid, and between them where a curve bends."),
     MT_F_LIST(
         "responses", responses, n_responses, mt_response_row, response_record,
         "One of each input and output: all outputs of the first input, then of the next."),
+    MT_F_RECORD(
+        "state_space", space, mt_state_space_row, mt_state_space_record,
+        "With --state-space: the mechanism between the ports as matrices, also what the "
+        "file has.",
+        MT_F_WHEN(with_space)),
 };
 const mt_record mt_answered_response_record =
     MT_F_RECORD_OF(configuration_fields, "configuration", "A configuration, answered.");
@@ -507,6 +514,8 @@ static mt_status answered_row_of(const mt_response_view *v, mt_arena *mem,
         .coupled = !b->t.diagonal,
         .complete = v->curve.complete,
         .with_profile = v->question->profile != NULL,
+        .with_space = v->question->state_space,
+        .space = v->space,
         .inputs = v->response.ports.in,
         .n_inputs = v->response.ports.n_in,
         .outputs = v->response.ports.out,
@@ -856,6 +865,10 @@ static mt_status compute(mt_response_view *v, mt_err *err)
     rc = rc == MT_OK ? mt_response_curve(&v->response, &v->opt, &v->curve, err) : rc;
     rc = rc == MT_OK ? poles(v, err) : rc;
     rc = rc == MT_OK ? sensitivities(v, err) : rc;
+    if (rc == MT_OK && v->question->state_space) {
+        rc = mt_state_space_row_of(&v->response, v->question->keep, v->opt.from, v->opt.to,
+                                   &v->space, err);
+    }
     return mt_err_in(err, rc, "%s: configuration \"%s\"", v->s->path, v->configuration);
 }
 

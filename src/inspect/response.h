@@ -7,6 +7,7 @@
 #include "analysis/lowest.h"
 #include "environment/vibration.h"
 #include "inspect/loaded_model.h"
+#include "inspect/state_space.h"
 #include "io/write_json.h"
 #include "response/response.h"
 #include "vibration/profile_response.h"
@@ -116,6 +117,7 @@ typedef struct mt_response_question {
     int keep; /* the lowest modes that are taken; 0: all */
     bool direct;
     bool poles;
+    bool state_space;
     const char *parameters;      /* "A,B", whose influence is told; NULL: of none */
     const mt_vibration *profile; /* NULL: none */
 } mt_response_question;
@@ -144,6 +146,7 @@ typedef struct mt_response_view {
     const double *value;     /* [n] */
     /* n_extremes x n: change of |H| in per cent, for one per cent more */
     const double *percent;
+    mt_state_space_row space; /* where it is asked for */
 } mt_response_view;
 
 /* Answer for configuration c. v zeroed before; mt_response_view_free in any case; s and the
@@ -254,9 +257,12 @@ typedef struct mt_answered_response_row {
     int n_frequencies;
     mt_response_row *responses;
     int n_responses;
+    bool with_space;
+    mt_state_space_row space;
 } mt_answered_response_row;
 
 extern const mt_record mt_answered_response_record;
+extern const mt_record mt_response_port_record;
 
 /* A pair is an output of an input: all outputs of the first input, then of the next. */
 int mt_response_view_pairs(const mt_response_view *v);

@@ -186,3 +186,24 @@ mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, co
     mt_arena_rewind(&r->mem, mark);
     return rc;
 }
+
+mt_status mt_response_state_space(mt_response *r, int modes, double to, mt_state_space *out,
+                                  mt_err *err)
+{
+    mt_basis basis;
+    MT_TRY(whole_basis(r, &basis, err));
+    int keep = modes;
+    for (int i = 0; modes == 0 && i < basis.n_modes; i++) {
+        keep += basis.lambda[i] <= to * to ? 1 : 0;
+    }
+    const mt_status rc = mt_state_space_make(&basis, keep, &r->mem, out, err);
+    const char *const output =
+        out->refused_output < 0 ? NULL : r->ports.out[out->refused_output].name;
+    const char *const input =
+        out->refused_input < 0 ? NULL : r->ports.in[out->refused_input].name;
+    if (rc == MT_OK || (output == NULL && input == NULL)) {
+        return rc;
+    }
+    return mt_err_in(err, rc, "%s%s%s", output == NULL ? "" : output,
+                     output == NULL || input == NULL ? "" : " by ", input == NULL ? "" : input);
+}

@@ -7,6 +7,7 @@
 #include "response/poles.h"
 #include "response/problem.h"
 #include "response/slopes.h"
+#include "response/state_space.h"
 
 /*
  * The forced response of one configuration: from ports by name to curves, poles and
@@ -63,6 +64,10 @@ void mt_response_free(mt_response *r);
 /* Traces the curve with opt; its poles and interrupt are set here. Results in r->mem. */
 mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curve *out,
                             mt_err *err);
+/* State space of the lowest `modes` modes (0: of those up to `to` [rad/s]), in r->mem; an error
+ * names the port. Fails: as mt_state_space_make. */
+mt_status mt_response_state_space(mt_response *r, int modes, double to, mt_state_space *out,
+                                  mt_err *err);
 /* Pole sums out[n_out x n_in], in r->mem; fails as mt_response_poles. */
 mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err);
 /**

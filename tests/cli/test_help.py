@@ -21,7 +21,7 @@ OPTIONS = {
     "sweep": {"configuration", "set", "count", "drive", "hold", "frequencies"},
     "simulate": {"vibration", "configuration", "set", "duration", "dt-out", "start", "rate", "start-mode", "input", "sine", "sine-sweep", "random", "integrate", "seed", "measure", "tolerance", "time"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
-    "response": {"configuration", "set", "input", "measure", "from", "to", "points", "log", "modes", "direct", "poles", "sensitivity", "vibration"},
+    "response": {"configuration", "set", "input", "measure", "from", "to", "points", "log", "modes", "direct", "poles", "state-space", "sensitivity", "vibration"},
     "info": {"configuration", "set"},
     "show": {"configuration", "set", "output", "svg", "mode", "model"},
     "report": {"output", "verify"},

@@ -7,6 +7,7 @@ import math
 
 import numpy
 from scipy import signal
+from scipy.io import mmread
 
 from common_cli import CliTest, main
 from common_shaken import chain
@@ -142,6 +143,78 @@ class Response(CliTest):
                            (["--input", "a.x", "--sensitivity", "k9"], '--sensitivity: unknown parameter "k9"')):
             self.assertIn(said, self.expect(2, "response", self.model, "-c", "held", *args).stderr)
         self.assertIn('joint "rb" is redundant', self.expect(2, "response", self.model, "-c", "twice", "--input", "a.x", "--measure", "joint.rb.y").stderr)
+
+class StateSpace(CliTest):
+    """--state-space: its matrices against the responses that the command tells, in all three forms."""
+
+    def setUp(self):
+        super().setUp()
+        model, *_ = chain(4, 7)
+        self.chain = self.write("problems/chain.json", json.dumps(model))
+        self.ports = ["--input", "b0.x", "--input", "base.x", "--measure", "b6.x", "--measure", "b3.x:acceleration", "--measure", "b2.x:relative_velocity",
+                      "--measure", "spring.s4"]
+        self.ports = self.ports if any(spring["name"] == "s4" for spring in model["springs"]) else self.ports[:-2]
+
+    def written(self, name, *more):
+        file = self.folder / name
+        got = self.json_of("response", self.chain, "-c", "default", *self.ports, "--state-space", file, *more)
+        return got, file
+
+    @staticmethod
+    def at(space, hz):
+        a, b, c, d = (numpy.array(space[name], float).reshape(len(space[name]), -1) for name in "ABCD")
+        return [c @ numpy.linalg.solve(2j * math.pi * f * numpy.eye(len(a)) - a, b) + d for f in hz]
+
+    def worst(self, got, space, below=math.inf):
+        hz = [f for f in got["frequencies_hz"] if f <= below]
+        values = self.at(space, hz)
+        worst = 0.0
+        for k, one in enumerate(got["responses"]):
+            o, i = k % len(got["outputs"]), k // len(got["outputs"])
+            want = (numpy.array(one["re"]) + 1j * numpy.array(one["im"]))[:len(hz)]
+            have = numpy.array([value[o, i] for value in values])
+            worst = max(worst, float(numpy.max(numpy.abs(have - want) / numpy.maximum(numpy.abs(want), numpy.median(numpy.abs(want))))))
+        return worst
+
+    def test_its_matrices_have_the_response(self):
+        got, file = self.written("all.json", "--to", "1000")
+        space = json.loads(file.read_text(encoding="utf-8"))
+        self.assertEqual(space, got["state_space"])
+        self.assertEqual((space["modes"], space["residual_shapes"], len(space["states"])), (7, 0, 16))  # the ground's motion, too
+        self.assertEqual(space["states"][-2:], ["integral of base.x:acceleration", "second integral of base.x:acceleration"])
+        self.assertLess(self.worst(got, space), 1e-8)
+        self.assertLess(space["largest_difference_percent"], 1e-6)
+        self.assertFalse(space["viscous_for_loss_factors"])
+
+    def test_fewer_modes_follow_the_rest_statically(self):
+        hz = [mode["frequency_hz"] for mode in self.json_of("modes", self.chain, "-c", "default")["modes"]]
+        got, file = self.written("few.json", "--from", str(hz[0] / 50), "--to", str((hz[2] + hz[3]) / 2))
+        space = json.loads(file.read_text(encoding="utf-8"))
+        self.assertEqual((space["modes"], space["residual_shapes"]), (3, 2))
+        self.assertLess(self.worst(got, space, hz[0] / 10), 1e-4)
+        told = space["largest_difference_percent"]
+        self.assertTrue(0.3 * told < 100 * self.worst(got, space) < 3 * told, told)  # at other frequencies
+
+    def test_all_forms_say_the_same(self):
+        got, _ = self.written("x.json")
+        space = got["state_space"]
+        _, file = self.written("x.csv")
+        rows = list(csv.reader(io.StringIO(file.read_text(encoding="utf-8"))))
+        inputs, outputs = ([port["name"] for port in space[kind]] for kind in ("inputs", "outputs"))
+        self.assertEqual(rows[0], ["row", *space["states"], *inputs])
+        self.assertEqual([row[0] for row in rows[1:]], space["states"] + outputs)
+        self.assertEqual([[float(cell) for cell in row[1:]] for row in rows[1:]],
+                         [a + b for a, b in zip(space["A"] + space["C"], space["B"] + space["D"])])
+        self.written("deep/x.mtx")
+        for name in "ABCD":
+            numpy.testing.assert_array_equal(mmread(self.folder / "deep" / f"x_{name}.mtx"), numpy.array(space[name]))
+
+    def test_what_has_none_is_refused(self):
+        for args, said in ((["--input", "b0.x", "--state-space", self.folder / "x.mat"], "ends with .json, .csv or .mtx"),
+                           (["--input", "base.x:displacement", "--state-space", self.folder / "x.json"],
+                            "base.x:displacement: there is no state space: a derivative of this input acts")):
+            self.assertIn(said, " ".join(self.expect(2, "response", self.chain, *args).stderr.split()))
+        self.assertFalse((self.folder / "x.json").exists())
 
 
 if __name__ == "__main__":

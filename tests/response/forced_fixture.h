@@ -57,6 +57,28 @@ static inline void forced_between(double *a, int n, int i, int j, double value)
     }
 }
 
+/* A random problem: a tree of springs with bracing, some of them dampers or lossy. */
+static inline void forced_random(mt_random *r, forced *p, int n, bool grounded)
+{
+    forced_all(p, n);
+    for (int i = 0; i < n; i++) {
+        const int to = i == 0 ? -1 : mt_random_int(r, i);
+        const double k = pow(10.0, mt_random_in(r, 2.0, 5.0));
+        p->m[i + (i * n)] = pow(10.0, mt_random_in(r, -1.0, 1.0));
+        if (i > 0 || grounded) {
+            forced_between(p->k, n, i, to, k);
+            forced_between(p->h, n, i, to, mt_random_in(r, 0.0, 0.1) * k);
+            forced_between(p->c, n, i, mt_random_int(r, n), mt_random_in(r, 0.0, 5.0));
+        }
+    }
+    for (int i = 0; i < n * n; i++) { /* other inputs and outputs than the freedoms */
+        p->b[i] += mt_random_in(r, -0.5, 0.5);
+    }
+    memcpy(p->s, p->b, sizeof p->s);
+    p->f.c = mt_random_int(r, 3) > 0 ? p->c : NULL;
+    p->f.h = mt_random_int(r, 3) > 0 ? p->h : NULL;
+}
+
 /* Both ways, with `keep` modes (0: all). */
 static inline bool forced_make(mt_test *t, forced *p, int keep)
 {

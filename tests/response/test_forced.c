@@ -124,35 +124,13 @@ static void forced__two_masses_match_their_closed_form(mt_test *t)
     }
 }
 
-/* A random problem: a tree of springs with bracing, some of them dampers or lossy. */
-static void random_problem(mt_random *r, forced *p, int n, bool grounded)
-{
-    forced_all(p, n);
-    for (int i = 0; i < n; i++) {
-        const int to = i == 0 ? -1 : mt_random_int(r, i);
-        const double k = pow(10.0, mt_random_in(r, 2.0, 5.0));
-        p->m[i + (i * n)] = pow(10.0, mt_random_in(r, -1.0, 1.0));
-        if (i > 0 || grounded) {
-            forced_between(p->k, n, i, to, k);
-            forced_between(p->h, n, i, to, mt_random_in(r, 0.0, 0.1) * k);
-            forced_between(p->c, n, i, mt_random_int(r, n), mt_random_in(r, 0.0, 5.0));
-        }
-    }
-    for (int i = 0; i < n * n; i++) { /* other inputs and outputs than the freedoms */
-        p->b[i] += mt_random_in(r, -0.5, 0.5);
-    }
-    memcpy(p->s, p->b, sizeof p->s);
-    p->f.c = mt_random_int(r, 3) > 0 ? p->c : NULL;
-    p->f.h = mt_random_int(r, 3) > 0 ? p->h : NULL;
-}
-
 static void forced__all_ways_agree_and_are_reciprocal(mt_test *t)
 {
     mt_random r = mt_random_seed(5);
     for (int round = 0; round < 60; round++) {
         const int n = 1 + mt_random_int(&r, FORCED_MOST);
         forced p;
-        random_problem(&r, &p, n, mt_random_int(&r, 4) > 0);
+        forced_random(&r, &p, n, mt_random_int(&r, 4) > 0);
         mt_test_row(t, "round %d, n = %d%s%s", round, n, p.f.c ? ", viscous" : "",
                     p.f.h ? ", structural" : "");
         if (!forced_make(t, &p, 0)) {
@@ -198,7 +176,7 @@ static void forced__directions_without_mass_are_exact(mt_test *t)
     for (int round = 0; round < 40; round++) {
         const int n = 2 + mt_random_int(&r, FORCED_MOST - 2);
         forced p;
-        random_problem(&r, &p, n, true);
+        forced_random(&r, &p, n, true);
         for (int i = 0; i < 1 + (n / 3); i++) {
             const int at = mt_random_int(&r, n);
             p.m[at + (at * n)] = 0.0;

@@ -49,6 +49,7 @@ LINES = {
     ],
     "response": [
         ["one.json", "--input", "a.x", "--poles", "--points", "4"],
+        ["one.json", "--input", "a.x", "--input", "base.x", "--state-space", "space.json", "--points", "4", "-c", "default"],
         ["one.json", "--input", "base.x", "--poles", "--points", "4"],
         ["one.json", "--input", "a.x", "--sensitivity", "k", "--points", "4"],
         ["one.json", "--input", "a.x", "--sensitivity", "k", "--points", "4", "--set", "c=0"],

@@ -2504,6 +2504,7 @@ class CommandResponseConfiguration(_CommandResponseConfigurationAlways, total=Fa
     shapes_of_others: int
     profile: "CommandResponseProfile"
     vibration_method: Literal["poles", "quadrature"]
+    state_space: "CommandResponseStateSpace"
 
 
 class CommandResponseFailed(TypedDict):
@@ -2606,6 +2607,25 @@ class CommandResponseVibratedTone(TypedDict):
     peak: Optional[float]
     excess_at_most: Optional[float]
     at_edge: bool
+
+
+class CommandResponseStateSpace(TypedDict):
+    """The mechanism between the ports as x' = A x + B u, y = C x + D u."""
+
+    modes: int
+    residual_shapes: int
+    states: List[str]
+    inputs: List["CommandResponsePort"]
+    outputs: List["CommandResponsePort"]
+    A: List[List[Optional[float]]]
+    B: List[List[Optional[float]]]
+    C: List[List[Optional[float]]]
+    D: List[List[Optional[float]]]
+    viscous_for_loss_factors: bool
+    from_hz: float
+    to_hz: float
+    compared: int
+    largest_difference_percent: Optional[float]
 
 
 class CommandSchemaListed(TypedDict):
