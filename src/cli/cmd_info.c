@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/file_info.h"
+#include "inspect/at_rest.h"
 #include "io/write_json.h"
 #include "mechanics/info.h"
 #include "mechanics/linear.h"
@@ -397,6 +398,7 @@ typedef struct view {
     mt_arena mem;
     mt_warning_list warning_list;
     convention_list conventions;
+    mt_rest_rows rest;
 } view;
 
 static void json_units(mt_json_writer *w, const mt_loaded_model *s)
@@ -525,6 +527,41 @@ static mt_status json_redundant(mt_json_writer *w, view *v, mt_err *err)
     return MT_OK;
 }
 
+static void json_rest(mt_json_writer *w, const mt_rest_rows *rest)
+{
+    mt_json_open(w, "at_rest", '[');
+    for (int i = 0; i < rest->n; i++) {
+        mt_record_put_object(w, NULL, &mt_rest_record, &rest->rows[i], 0, NULL);
+    }
+    mt_json_close(w);
+    mt_json_put_integer(w, "at_rest_left_out", rest->left_out);
+}
+
+/* What there is at rest, a line for each sensor, spring and joint. */
+static void text_rest(mt_text *out, view *v)
+{
+    const mt_rest_rows *const rest = &v->rest;
+    int lines = 0;
+    for (int i = 0, end = 0; i < rest->n && lines < MOST_LINES; i = end, lines++) {
+        const int owner = mt_rest_owner(&rest->rows[i]);
+        while (end < rest->n && mt_rest_owner(&rest->rows[end]) == owner &&
+               strncmp(rest->rows[end].output, rest->rows[i].output, (size_t)owner) == 0) {
+            end++;
+        }
+        const char *const text = mt_rest_text(rest, i, end, DIGITS, &v->mem);
+        if (i == 0) {
+            mt_text_add(out,
+                        "  at rest     sensors against the reference position; what joints "
+                        "do to their second body\n");
+        }
+        mt_text_addf(out, "    %.*s: %s\n", owner, rest->rows[i].output,
+                     text == NULL ? "" : text);
+        if (lines + 1 == MOST_LINES && end < rest->n) {
+            mt_text_addf(out, "    ... and %d numbers more (--format json)\n", rest->n - end);
+        }
+    }
+}
+
 static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
 {
     const mt_info *const i = &v->info;
@@ -553,6 +590,7 @@ static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
     MT_TRY(json_redundant(w, v, err));
     mt_json_put_number(w, "equilibrium_residual", i->residual);
     mt_json_put_number(w, "gap_m", i->gap_m);
+    json_rest(w, &v->rest);
     json_damping(w, v);
     cli_json_conventions(w, &v->conventions);
     mt_record_put_object(w, "dead_centre", &mt_dead_centre_record,
@@ -585,7 +623,7 @@ static void write_conventions(mt_text *out, const view *v, mt_text *last)
     *last = text;
 }
 
-static void write_info_text(mt_text *out, const view *v, mt_text *last)
+static void write_info_text(mt_text *out, view *v, mt_text *last)
 {
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
@@ -615,6 +653,7 @@ static void write_info_text(mt_text *out, const view *v, mt_text *last)
     if (mt_linear_position(v->a->lin)->equilibrium.active) {
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);
+        text_rest(out, v);
     }
     write_conventions(out, v, last);
     mt_text_add(out, "\n");
@@ -712,6 +751,8 @@ static mt_status show_configuration_info(const mt_args *args, view *v, const sin
     MT_TRY(mt_warnings_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at,
                                    &v->warning_list, err));
     MT_TRY(find_conventions(v, err));
+    MT_TRY(args->format == MT_FORMAT_CSV ? MT_OK
+                                         : mt_rest_rows_of(v->a, &v->mem, &v->rest, err));
     switch (args->format) {
     case MT_FORMAT_JSON:
         return write_info_json(to->w, v, err);
@@ -804,7 +845,11 @@ const mt_command mt_command_info = {
         "Of a model it prints for each configuration, in the position about which it is "
         "linearised, the "
         "total mass, its centre and inertia, the degrees of freedom, and the sets of "
-        "redundant joints. Where a number of the model depends on a sign, an axis or an "
+        "redundant joints; of an equilibrium the displacements of its sensors from the "
+        "reference position, where nothing is loaded or driven, the forces of its springs, and "
+        "what each joint's first body does to its second: its force, and its moment about the "
+        "joint's point on the second body, along global axes. Where a number of the model "
+        "depends on a sign, an axis or an "
         "order of bodies (preloads, free angles, moments, gear ratios, products of "
         "inertia, sections, bushings), it states how the number is understood.",
     .answer = {&mt_held_file_record, MT_ANSWER_HELD},

@@ -42,9 +42,10 @@ mt_status mt_static_slopes(mt_linear *lin, const mt_static *q, double *slope, mt
  * force (moment) along `in` at the equilibrium, with K_r x = b, K_r y = s
  *     C = s . x,      dC = ds . x + y . db - y . dK_r x
  * of the tangent stiffness, geometric part and constraints included, without damping and loss
- * factors. After an update; slope[n_inputs] (NULL: not wanted) after one with gradients, NaN
- * where redundant joints leave no derivative. Nothing may be free to move (mt_modes).
- * O(n^3). Fails: MT_E_NOT_SPD (K_r is not positive definite), MT_E_MEMORY.
+ * factors. A sensor within a beam element moves as on its chord (rows.c): it is off by the part
+ * that the bow is of the element's length. After an update; slope[n_inputs] (NULL: not wanted)
+ * after one with gradients, NaN where redundant joints leave no derivative. Nothing may be free
+ * to move (mt_modes). O(n^3). Fails: MT_E_NOT_SPD (K_r is not positive definite), MT_E_MEMORY.
  */
 mt_status mt_static_compliance(mt_linear *lin, int out, int in, double *value, double *slope,
                                mt_err *err);

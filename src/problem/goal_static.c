@@ -22,17 +22,6 @@ typedef struct mt_rest_reading {
     int pushed;   /* channel of the unit load; -1: none */
 } rest_reading;
 
-static mt_static static_of(const mt_port *port)
-{
-    const bool hold = port->kind == MT_PORT_JOINT && port->axis == MT_PORT_HOLD;
-    return (mt_static){.kind = hold                           ? MT_STATIC_HOLD
-                               : port->kind == MT_PORT_JOINT  ? MT_STATIC_JOINT
-                               : port->kind == MT_PORT_SPRING ? MT_STATIC_SPRING
-                                                              : MT_STATIC_SENSOR,
-                       .index = port->index,
-                       .axis = port->axis};
-}
-
 /* The value of one configuration, and its slope over the inputs (NULL: not wanted). */
 static mt_status read_rest(mt_analysis *a, const rest_reading *r, mt_static_quantity quantity,
                            double *value, double *slope, mt_err *err)
@@ -84,7 +73,7 @@ static mt_status find_ports(mt_problem *p, const mt_requirement *d, rest_reading
     mt_port port;
     MT_TRY(at_member(d, "output", mt_port_at_rest(sys, s->output.s, &p->mem, &port, &own), &own,
                      err));
-    r->of = static_of(&port);
+    r->of = mt_port_static(&port);
     r->pushed = -1;
     if (s->input.s == NULL) {
         return MT_OK;

@@ -272,3 +272,14 @@ mt_status mt_port_at_rest(const mt_system *sys, const char *text, mt_arena *mem,
                ? find_joint_port(sys, text, true, mem, out, err)
                : mt_port_output(sys, text, mem, out, err);
 }
+
+mt_static mt_port_static(const mt_port *port)
+{
+    const bool hold = port->kind == MT_PORT_JOINT && port->axis == MT_PORT_HOLD;
+    return (mt_static){.kind = hold                           ? MT_STATIC_HOLD
+                               : port->kind == MT_PORT_JOINT  ? MT_STATIC_JOINT
+                               : port->kind == MT_PORT_SPRING ? MT_STATIC_SPRING
+                                                              : MT_STATIC_SENSOR,
+                       .index = port->index,
+                       .axis = port->axis};
+}

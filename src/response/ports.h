@@ -2,6 +2,7 @@
 #ifndef RESPONSE_PORTS_H
 #define RESPONSE_PORTS_H
 
+#include "mechanics/statics.h"
 #include "mechanics/system.h"
 
 /*
@@ -70,5 +71,7 @@ mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, 
  */
 mt_status mt_port_at_rest(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
                           mt_err *err);
+/* What such a port is read as. */
+mt_static mt_port_static(const mt_port *port);
 
 #endif
