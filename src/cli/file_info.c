@@ -313,16 +313,40 @@ static const char *join_names(held_file *h, const mt_name_list *names)
     return text;
 }
 
+static const char *mode_text(held_file *h, const mt_mode_ref *mode)
+{
+    return mode->mode_name.s != NULL
+               ? mt_arena_printf(&h->mem, "mode \"%s\"", mode->mode_name.s)
+           : mode->index > 0 ? mt_arena_printf(&h->mem, "mode %d", mode->index)
+                             : "";
+}
+
+/* "mode 2 to mode 1 of "free"", "mode 1, mode 2, mode 3 apart"; of one mode its own. */
+static const char *modes_text(held_file *h, const mt_goal *g)
+{
+    const char *text = mode_text(h, &g->mode);
+    const char *const of = mode_text(h, &g->of.mode);
+    const mt_name where = g->of.configuration_name;
+    if (of != NULL && of[0] != '\0') {
+        return where.s == NULL
+                   ? mt_arena_printf(&h->mem, "%s to %s", text, of)
+                   : mt_arena_printf(&h->mem, "%s to %s of \"%s\"", text, of, where.s);
+    }
+    for (int i = 0; i < g->n_modes && text != NULL; i++) {
+        text = mt_arena_printf(&h->mem, "%s%s%s", text, i == 0 ? "" : ", ",
+                               mode_text(h, &g->modes[i]));
+    }
+    return text;
+}
+
 static void hold_goal(held_file *h, const mt_study *study, int index)
 {
     const mt_goal *const g = &study->goals[index];
     held_item *const item = add_item(h, "goal", mt_arena_printf(&h->mem, "/goals/%d", index));
     const char *const where = join_names(h, &g->configuration_names);
     const char *about = g->expression_text == NULL ? "" : g->expression_text;
-    if (g->mode.mode_name.s != NULL) {
-        about = mt_arena_printf(&h->mem, "mode \"%s\"", g->mode.mode_name.s);
-    } else if (g->mode.index > 0) {
-        about = mt_arena_printf(&h->mem, "mode %d", g->mode.index);
+    if (g->mode.mode_name.s != NULL || g->mode.index > 0 || g->n_modes > 0) {
+        about = modes_text(h, g);
     } else if (g->response_limit != NULL && g->response_limit->output.s != NULL) {
         about = mt_arena_printf(
             &h->mem, "%s by %s", g->response_limit->output.s,

@@ -247,13 +247,14 @@ static mt_status jointly(const mt_proof *proof, long boxes, mt_arena *mem, mt_re
                  found.boxes);
 }
 
-/* True where a goal is a limit or target of a frequency, which a box may exclude. */
+/* True where a goal is a limit or target of frequencies, which a box may exclude. */
 static bool limits_frequency(const mt_problem *p)
 {
     bool found = false;
     for (int i = 0; i < p->n_requirements && !found; i++) {
         const mt_requirement *const d = &p->requirements[i];
-        found = d->role != MT_ROLE_RESIDUAL && mt_requirement_is_frequency(d);
+        found = d->role != MT_ROLE_RESIDUAL &&
+                (mt_requirement_is_frequency(d) || mt_requirement_is_pair(d));
     }
     return found;
 }
@@ -278,7 +279,8 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_are
     for (int i = 0; rc == MT_OK && proof.possible && i < proof.question.n_limits; i++) {
         rc = describe_reach(p, &proof, i, mem, result, infeasible, err);
     }
-    if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
+    if (rc == MT_OK && proof.possible && !*infeasible &&
+        proof.question.n_limits + proof.question.n_pairs > 0) {
         rc = jointly(&proof, boxes, mem, result, infeasible, err);
     }
     if (rc == MT_OK && *infeasible) {

@@ -135,6 +135,14 @@ static double *of_frequency(const mt_recommendation *rec, const mt_result_goal *
     return NULL;
 }
 
+static mt_status solve_with_slopes(mt_workspace *fresh, mt_configuration_work *view,
+                                   mt_err *err)
+{
+    mt_configuration_query_all(view);
+    view->ask.vectors = true;
+    return mt_configuration_solve(fresh, view, true, err);
+}
+
 /* Derivatives of another value, from its slope over t. */
 static mt_status of_value(mt_workspace *fresh, const mt_requirement *d, mt_result *result,
                           mt_result_goal *g, mt_err *err)
@@ -145,9 +153,10 @@ static mt_status of_value(mt_workspace *fresh, const mt_requirement *d, mt_resul
     const bool modal = mt_requirement_is_modal(d);
     if (d->view >= 0) {
         mt_configuration_work *const view = &fresh->views[d->view];
-        mt_configuration_query_all(view);
-        view->ask.vectors = true;
-        MT_TRY(mt_configuration_solve(fresh, view, true, err));
+        MT_TRY(solve_with_slopes(fresh, view, err));
+        MT_TRY(d->of.view >= 0 && d->of.view != d->view
+                   ? solve_with_slopes(fresh, &fresh->views[d->of.view], err)
+                   : MT_OK);
         MT_TRY(modal ? mt_configuration_position(fresh, view, d->mode, d->named, &pos, err)
                      : MT_OK);
         if (modal && pos < 0) {
@@ -383,7 +392,7 @@ static mt_status warn_lost(const listing *l, const mt_requirement *d, mt_err *er
     }
     return mt_describe_warn(
         l->result, err, "recommendation %d: mode \"%s\" of configuration \"%s\" is %s",
-        l->design->rank, d->goal->mode.mode_name.s, mt_analysis_configuration(l->scratch), why);
+        l->design->rank, d->asked->mode_name.s, mt_analysis_configuration(l->scratch), why);
 }
 
 static mt_status count_modes(mt_workspace *fresh, int v, int *count, mt_err *err)

@@ -69,21 +69,38 @@ const char *mt_describe_identity(const mt_configuration_work *view, int named, m
     return mt_arena_printf(mem, "ambiguous between modes %d and %d", low, high);
 }
 
-/* True where the mode of the requirement is identified, or its frequency is that of all
- * candidates. */
-static bool is_told(const mt_configuration_work *view, const mt_requirement *d)
+/* True where a named mode of a requirement is identified, or its frequency, which the
+ * requirement is about, is that of all candidates. */
+static bool is_mode_told(const mt_configuration_work *view, const mt_requirement *d, int named)
 {
     int size = 1;
-    if (d->named < 0 || !view->solved || !view->tracked) {
+    if (named < 0 || !view->solved || !view->tracked) {
         return true;
     }
-    const mt_track *const k = &view->track[d->named];
+    const mt_track *const k = &view->track[named];
     if (k->pos < 0 || k->state == MT_TRACKED) {
         return true; /* where there is no mode, that is the trouble */
     }
     const int first = mt_modal_cluster(&view->analysis->modes, k->pos, &size);
     const bool same_hz = k->rival >= first && k->rival < first + size;
-    return d->quantity == MT_QUANTITY_FREQUENCY && k->state == MT_TRACK_AMBIGUOUS && same_hz;
+    const bool of_hz =
+        d->quantity == MT_QUANTITY_FREQUENCY || d->quantity == MT_QUANTITY_FREQUENCIES;
+    return of_hz && k->state == MT_TRACK_AMBIGUOUS && same_hz;
+}
+
+/* The mode of a requirement that is not identified; NULL: all are. */
+static const mt_requirement_mode *find_untold(const mt_workspace *fresh,
+                                              const mt_requirement *d, mt_requirement_mode *own)
+{
+    *own = (mt_requirement_mode){d->asked, d->view, d->mode, d->named};
+    if (!mt_requirement_is_modal(d)) {
+        return NULL;
+    }
+    if (!is_mode_told(&fresh->views[d->view], d, d->named)) {
+        return own;
+    }
+    return d->of.view < 0 || is_mode_told(&fresh->views[d->of.view], d, d->of.named) ? NULL
+                                                                                     : &d->of;
 }
 
 /* Goals that limit a number between the positions of one drive that they name: the worst of
@@ -94,6 +111,10 @@ static const double TWO_PI = 6.283185307179586476925;
 /* "the acceleration of grip.x for base.z", "the frequency of mode 1". */
 static const char *about_text(const mt_requirement *d, mt_arena *mem)
 {
+    if (d->of.view >= 0) {
+        return mt_arena_printf(mem, "the %s of modes %d and %d", d->ops->number, d->mode,
+                               d->of.mode);
+    }
     return d->goal->response_limit != NULL
                ? mt_describe_response_limit(d->goal->response_limit, mem)
                : mt_arena_printf(mem, "the %s of mode %d", d->ops->number, d->mode);
@@ -691,7 +712,7 @@ static const char *quantity_text(const mt_problem *p, const mt_requirement *d, m
     }
     return d->mode > 0
                ? mt_arena_printf(mem, "%s mode %d", configuration, d->mode)
-               : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
+               : mt_arena_printf(mem, "%s \"%s\"", configuration, d->asked->mode_name.s);
 }
 
 /* " from a to b Hz", " at least a Hz", " at most b Hz", " at a Hz as mode 2 of \"fe\"", or
@@ -785,11 +806,11 @@ static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
 }
 
 /* Warn that the mode of the goal is not identified: the goal is not met, for any value. */
-static mt_status warn_unidentified(const mt_workspace *fresh, const mt_requirement *d,
+static mt_status warn_unidentified(const mt_workspace *fresh, const mt_requirement_mode *mode,
                                    mt_result *result, mt_result_goal *g, mt_err *err)
 {
     const char *const why =
-        mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
+        mt_describe_identity(&fresh->views[mode->view], mode->named, &result->mem);
     g->met = false;
     g->text = mt_arena_printf(&result->mem, "%s, %s", g->text, why);
     g->doubtful = true;
@@ -815,7 +836,12 @@ static void write_what(const mt_problem *p, const mt_requirement *d, mt_result_g
     }
     if (mt_requirement_is_modal(d)) {
         g->mode = d->mode;
-        g->name = d->mode > 0 ? NULL : asked->mode.mode_name.s;
+        g->name = d->mode > 0 ? NULL : d->asked->mode_name.s;
+    }
+    if (d->of.view >= 0) {
+        g->of_configuration = mt_configuration_name(p, &p->views[d->of.view]);
+        g->of_mode = d->of.mode;
+        g->of_name = d->of.mode > 0 ? NULL : d->of.asked->mode_name.s;
     }
     g->at_least = asked->at_least;
     g->at_most = asked->at_most;
@@ -874,9 +900,9 @@ static mt_status describe_requirement(mt_workspace *fresh, const mt_requirement 
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);
     MT_TRY(mt_arena_check(&result->mem, err));
-    return !mt_requirement_is_modal(d) || is_told(&fresh->views[d->view], d)
-               ? MT_OK
-               : warn_unidentified(fresh, d, result, g, err);
+    mt_requirement_mode first;
+    const mt_requirement_mode *const untold = find_untold(fresh, d, &first);
+    return untold == NULL ? MT_OK : warn_unidentified(fresh, untold, result, g, err);
 }
 
 /* Write the length at which angles count as arcs, where sensors of a MAC or a shape mix

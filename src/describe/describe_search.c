@@ -279,11 +279,10 @@ enum { MOST = 8 };
 static void name_goal(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_relaxation *out)
 {
     const mt_requirement *const d = &p->requirements[m->requirement];
-    const mt_goal_kind *const kind = mt_goal_kind_of(d->goal->type);
     const mt_goal_slot slot = m->target  ? MT_SLOT_EQUALS
                               : m->upper ? MT_SLOT_AT_MOST
                                          : MT_SLOT_AT_LEAST;
-    const char *const member = mt_goal_member_name(kind, slot);
+    const char *const member = mt_goal_number_name(d->goal, slot);
     out->kind = "goal";
     out->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
     const char *const unit = mt_study_goal_unit(p->study, d->goal);

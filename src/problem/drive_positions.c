@@ -65,8 +65,11 @@ static bool same_response_limit(const mt_response_limit *a, const mt_response_li
 
 bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement *b)
 {
-    return a->goal_index == b->goal_index ||
+    const bool own = a->goal_index == b->goal_index && a->asked == b->asked;
+    return own ||
            (a->ops == b->ops && a->mode == b->mode && a->named < 0 && b->named < 0 &&
+            a->of.mode == b->of.mode && a->of.named < 0 && b->of.named < 0 &&
+            is_equal(a->goal->at_least_hz, b->goal->at_least_hz) &&
             a->role != MT_ROLE_RESIDUAL && b->role != MT_ROLE_RESIDUAL &&
             is_equal(a->equals, b->equals) && is_equal(a->goal->at_least, b->goal->at_least) &&
             is_equal(a->goal->at_most, b->goal->at_most) &&
@@ -79,8 +82,9 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
  * positions only. */
 static bool is_limited(const mt_problem *p, const mt_requirement *d)
 {
+    const bool here = d->of.view < 0 || d->of.view == d->view; /* all of it moves */
     const bool limits = d->ops->value != NULL && d->role != MT_ROLE_RESIDUAL &&
-                        !MT_HAS(d->equals) && d->rest == NULL;
+                        !MT_HAS(d->equals) && d->rest == NULL && here;
     const int drive_positions = limits && d->view >= 0 ? mt_drive_positions_of(p, d->view) : -1;
     for (int i = 0; i < p->n_requirements && drive_positions >= 0; i++) {
         const mt_requirement *const other = &p->requirements[i];

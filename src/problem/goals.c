@@ -13,17 +13,33 @@
  *     r = sqrt(w) (sign u - s_ref),   u = s / |s|,   sign = sign(s . s_ref)
  *     dr = sqrt(w) sign (ds - u (u . ds)) / |s|
  * "mac": MAC of the mode's shape at the sensors with that of a reference.
+ *
+ * Goals of two modes, at f and f_of:
+ * "ratio": f / f_of, its rows in the logarithm,
+ *     d ln q / dt = d ln f / dt - d ln f_of / dt
+ * "apart": with g the higher and s the lower frequency,
+ *     q = 100 (g / s - 1) or g - s
+ *   Indices are in order of frequency, names in any. Where the two meet, q has a kink:
+ *   the gap to first order along v is that of eigenvalues of
+ *     B(v) = sum_j v_j Phi' (dK/dx_j - lambda dM/dx_j) Phi,   Phi: the shapes that meet
+ *   and the slope is that of the vectors of B(v) for the v which spreads them most (the largest
+ *   singular value of v -> B(v) less its mean): a limit of slopes nearby.
  */
 
 #include "problem/goals.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "analysis/damping.h"
 #include "analysis/tracking.h"
+#include "linalg/eig_small.h"
+#include "problem/configuration.h"
 #include "problem/frequency.h"
 #include "problem/requirement.h"
 #include "prove/box.h"
+
+static const double PERCENT = 100.0;
 
 /* Index of the reference's mode that the requirement names; by default its own index. */
 static int reference_mode(const mt_problem *p, const mt_requirement *d)
@@ -64,26 +80,27 @@ static mt_status sense_shape(mt_workspace *w, const mt_requirement *d, int pos,
     return MT_OK;
 }
 
-/* The same of a named mode: in a cluster by the vector of its own. */
-static mt_status dln_named(mt_workspace *w, const mt_requirement *d, int pos, double *out,
-                           mt_err *err)
+/* Slope of the logarithm of a frequency; of a named mode in a cluster by the vector of its
+ * own. */
+static mt_status dln_of(mt_workspace *w, int at, int named, int pos, double floor_hz,
+                        double *out, mt_err *err)
 {
-    const mt_configuration_work *const view = &w->views[d->view];
+    const mt_configuration_work *const view = &w->views[at];
     mt_analysis *const a = view->analysis;
     int size = 1;
     const double lambda = pos < 0 ? 0.0 : a->modes.lambda[pos];
-    bool own = pos >= 0 && d->named >= 0 && lambda > mt_enclosure_lambda(d->floor_hz);
+    bool own = pos >= 0 && named >= 0 && lambda > mt_enclosure_lambda(floor_hz);
     if (own) {
         (void)mt_modal_cluster(&a->modes, pos, &size);
         own = size > 1;
     }
     if (own) {
-        MT_TRY(mt_track_dlambda(a, view->of->shape[d->named], pos, out, &own, err));
+        MT_TRY(mt_track_dlambda(a, view->of->shape[named], pos, out, &own, err));
     }
     for (int i = 0; i < w->p->n && own; i++) {
         out[i] *= mt_workspace_dx_dt(w, i) / (2.0 * lambda);
     }
-    return own ? MT_OK : mt_problem_dln_frequency(w, a, pos, d->floor_hz, out, err);
+    return own ? MT_OK : mt_problem_dln_frequency(w, a, pos, floor_hz, out, err);
 }
 
 /* The reference's frequency is the target. */
@@ -108,7 +125,7 @@ static mt_status evaluate_frequency(mt_workspace *w, const mt_requirement *d, in
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": the mode has no frequency",
                        mt_analysis_configuration(a));
     }
-    return slope == NULL ? MT_OK : dln_named(w, d, pos, slope, err);
+    return slope == NULL ? MT_OK : dln_of(w, d->view, d->named, pos, d->floor_hz, slope, err);
 }
 
 const mt_goal_ops mt_goal_frequency = {.quantity = MT_QUANTITY_FREQUENCY,
@@ -116,6 +133,289 @@ const mt_goal_ops mt_goal_frequency = {.quantity = MT_QUANTITY_FREQUENCY,
                                        .value = evaluate_frequency,
                                        .number = "frequency",
                                        .equals = "at"};
+
+/* The frequency of the other mode of two. */
+static mt_status find_other(mt_workspace *w, const mt_requirement *d, int *pos, double *hz,
+                            mt_err *err)
+{
+    const mt_requirement_mode *const of = &d->of;
+    mt_configuration_work *const view = &w->views[of->view];
+    MT_TRY(mt_configuration_position(w, view, of->mode, of->named, pos, err));
+    *hz = *pos < 0 ? nan("") : mt_modal_hz(&view->analysis->modes, *pos);
+    return *hz >= 0.0 ? MT_OK
+                      : mt_fail(err, MT_E_DOMAIN,
+                                "configuration \"%s\" has no such vibration mode to compare "
+                                "with here",
+                                mt_analysis_configuration(view->analysis));
+}
+
+/* Adds factor times the slope of the logarithm of the other mode's frequency. */
+static mt_status add_other_slope(mt_workspace *w, const mt_requirement *d, int pos,
+                                 double floor_hz, double factor, double *slope, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&w->mem);
+    double *const other = mt_arena_f64(&w->mem, (size_t)w->p->n, 1);
+    mt_status rc = mt_arena_check(&w->mem, err);
+    rc = rc == MT_OK ? dln_of(w, d->of.view, d->of.named, pos, floor_hz, other, err) : rc;
+    for (int i = 0; i < w->p->n && rc == MT_OK; i++) {
+        slope[i] += factor * other[i];
+    }
+    mt_arena_rewind(&w->mem, mark);
+    return rc;
+}
+
+static mt_status compile_ratio(mt_problem *p, mt_requirement *d, mt_err *err)
+{
+    const mt_goal *const g = d->goal;
+    (void)p;
+    (void)err;
+    d->floor_hz = MT_FREQUENCY_FLOOR * fmin(fmin(g->equals, g->at_least), g->at_most);
+    return MT_OK;
+}
+
+/* The row continues ln q below a floor of q by a tangent in q^2 (frequency.h): so does its
+ * slope. */
+static mt_status evaluate_ratio(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                                double *slope, mt_err *err)
+{
+    const mt_analysis *const a = w->views[d->view].analysis;
+    int pos_of = -1;
+    double of = nan("");
+    MT_TRY(find_other(w, d, &pos_of, &of, err));
+    *q = mt_modal_hz(&a->modes, pos) / of;
+    if (!(of > 0.0) || !isfinite(*q)) {
+        return mt_fail(err, MT_E_DOMAIN,
+                       "the ratio has no value: a mode of configuration \"%s\" is at 0 Hz",
+                       mt_analysis_configuration(w->views[d->of.view].analysis));
+    }
+    if (slope == NULL) {
+        return MT_OK;
+    }
+    const double part = fmin(*q / d->floor_hz, 1.0);
+    MT_TRY(dln_of(w, d->view, d->named, pos, d->floor_hz * of, slope, err));
+    return add_other_slope(w, d, pos_of, 0.0, -part * part, slope, err);
+}
+
+static const char *other_text(const mt_requirement *d, mt_arena *mem)
+{
+    return d->of.mode > 0 ? mt_arena_printf(mem, "mode %d", d->of.mode)
+                          : mt_arena_printf(mem, "\"%s\"", d->of.asked->mode_name.s);
+}
+
+static const char *ratio_subject(const mt_requirement *d, const char *what, mt_arena *mem)
+{
+    const char *const other = other_text(d, mem);
+    const mt_name where = d->goal->of.configuration_name;
+    return where.s == NULL ? mt_arena_printf(mem, "%s: ratio to %s", what, other)
+                           : mt_arena_printf(mem, "%s: ratio to %s %s", what, where.s, other);
+}
+
+const mt_goal_ops mt_goal_ratio = {.quantity = MT_QUANTITY_FREQUENCIES,
+                                   .compile = compile_ratio,
+                                   .value = evaluate_ratio,
+                                   .subject = ratio_subject,
+                                   .number = "ratio of frequencies",
+                                   .equals = "at"};
+
+/* Modes that meet, at most: of more no direction is told. */
+enum { MEETING_MOST = 5, MEETING_ENTRIES = MEETING_MOST * MEETING_MOST };
+
+/* b[r x r x n]: Phi' (dK/dx_j - lambda dM/dx_j) Phi for every variable, by the polarisation of
+ * quadratic forms, in the coordinates t, less its mean over the diagonal. */
+static mt_status meeting_slopes(mt_workspace *w, mt_analysis *a, int first, int r, double *b,
+                                mt_arena *mem, mt_err *err)
+{
+    const int n = w->p->n;
+    const size_t freedoms = (size_t)mt_linear_freedoms(a->lin);
+    double *const sum = mt_arena_f64(mem, freedoms, 1);
+    double *const form = mt_arena_f64(mem, (size_t)n, 1);
+    const double lambda = a->modes.lambda[first];
+    MT_TRY(mt_arena_check(mem, err));
+    for (int pair = 0; pair < r * r; pair++) {
+        const int i = pair % r;
+        const int k = pair / r;
+        const double *const x = mt_modal_shape(&a->modes, first + i);
+        const double *const y = mt_modal_shape(&a->modes, first + k);
+        for (size_t m = 0; m < freedoms; m++) {
+            sum[m] = i == k ? x[m] : x[m] + y[m];
+        }
+        MT_TRY(mt_linear_slopes(a->lin, lambda, sum, form, err));
+        for (int j = 0; j < n; j++) {
+            b[pair + (j * r * r)] = mt_workspace_dx_dt(w, j) * form[j];
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        double *const own = b + ((ptrdiff_t)j * r * r);
+        double mean = 0.0;
+        for (int pair = 0; pair < r * r; pair++) {
+            const int i = pair % r;
+            const int k = pair / r;
+            own[pair] -= i == k ? 0.0 : own[i + (i * r)] + own[k + (k * r)];
+            own[pair] *= i == k ? 1.0 : 0.5;
+        }
+        for (int i = 0; i < r; i++) {
+            mean += own[i + (i * r)] / (double)r;
+        }
+        for (int i = 0; i < r; i++) {
+            own[i + (i * r)] -= mean;
+        }
+    }
+    return MT_OK;
+}
+
+/* form[r x r], scaled by its largest entry, to eigenvectors of ascending eigenvalues; false: it
+ * is 0, or there are none. */
+static bool small_vectors(int n, double *form)
+{
+    double value[MEETING_ENTRIES];
+    double most = 0.0;
+    for (int i = 0; i < n * n; i++) {
+        most = fmax(most, fabs(form[i]));
+    }
+    for (int i = 0; i < n * n; i++) {
+        form[i] /= most > 0.0 ? most : 1.0;
+    }
+    return most > 0.0 && isfinite(most) && mt_eig_small(n, form, value, true);
+}
+
+/* vector[r x r]: vectors of B(v) along the direction that spreads modes most; false: nothing
+ * spreads them. */
+static bool find_spread(int n, int r, const double *b, double *vector)
+{
+    const int entries = r * r;
+    double gram[MEETING_ENTRIES * MEETING_ENTRIES] = {0.0};
+    int lead = 0;
+    for (int i = 0; i < entries * entries; i++) {
+        for (int j = 0; j < n; j++) {
+            gram[i] += b[(i % entries) + (j * entries)] * b[(i / entries) + (j * entries)];
+        }
+    }
+    if (!small_vectors(entries, gram)) {
+        return false;
+    }
+    /* B(v) = sum_j v_j B_j with v_j = B_j . z is the largest eigenvalue times z itself */
+    const double *const z = gram + ((ptrdiff_t)(entries - 1) * entries);
+    for (int i = 1; i < entries; i++) {
+        lead = fabs(z[i]) > fabs(z[lead]) ? i : lead;
+    }
+    for (int i = 0; i < entries; i++) {
+        vector[i] = z[lead] < 0.0 ? -z[i] : z[i];
+    }
+    return small_vectors(r, vector);
+}
+
+/* c' B c */
+static double form_of(int r, const double *b, const double *c)
+{
+    double sum = 0.0;
+    for (int i = 0; i < r * r; i++) {
+        sum += c[i % r] * b[i] * c[i / r];
+    }
+    return sum;
+}
+
+/* Slope of ln(f_high / f_low) of two modes that meet, at positions among all modes. */
+static mt_status meeting_gap(mt_workspace *w, mt_analysis *a, int low, int high, double *slope,
+                             mt_err *err)
+{
+    const int n = w->p->n;
+    int r = 1;
+    const int first = mt_modal_cluster(&a->modes, low, &r);
+    const double lambda = a->modes.lambda[first];
+    double vector[MEETING_ENTRIES];
+    memset(slope, 0, (size_t)n * sizeof *slope);
+    if (r > MEETING_MOST || !(lambda > 0.0)) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&w->mem);
+    double *const b = mt_arena_f64(&w->mem, (size_t)r * (size_t)r, (size_t)n);
+    mt_status rc = mt_arena_check(&w->mem, err);
+    rc = rc == MT_OK ? meeting_slopes(w, a, first, r, b, &w->mem, err) : rc;
+    if (rc == MT_OK && find_spread(n, r, b, vector)) {
+        const double *const over = vector + ((ptrdiff_t)(high - first) * r);
+        const double *const under = vector + ((ptrdiff_t)(low - first) * r);
+        for (int j = 0; j < n; j++) {
+            const double *const own = b + ((ptrdiff_t)j * r * r);
+            slope[j] = (form_of(r, own, over) - form_of(r, own, under)) / (2.0 * lambda);
+        }
+    }
+    mt_arena_rewind(&w->mem, mark);
+    return rc;
+}
+
+/* Two modes of one configuration, by their positions among all modes and their frequencies. */
+typedef struct two_modes {
+    int at[2]; /* lower, higher */
+    double hz[2];
+    double sign; /* -1: the first named of them is the lower */
+} two_modes;
+
+/* slope[n]: factor[1] d ln f_higher - factor[0] d ln f_lower. */
+static mt_status apart_slope(mt_workspace *w, const mt_requirement *d, const two_modes *m,
+                             const double *factor, double *slope, mt_err *err)
+{
+    mt_analysis *const a = w->views[d->view].analysis;
+    const double floor_hz = MT_FREQUENCY_FLOOR * m->hz[1];
+    const bool swapped = m->sign < 0.0;
+    int size = 1;
+    const int first = mt_modal_cluster(&a->modes, m->at[0], &size);
+    if (d->named < 0 && d->of.named < 0 && m->at[1] < first + size) {
+        MT_TRY(meeting_gap(w, a, m->at[0], m->at[1], slope, err));
+        for (int i = 0; i < w->p->n; i++) {
+            slope[i] *= factor[1];
+        }
+        return MT_OK;
+    }
+    MT_TRY(dln_of(w, d->view, d->named, m->at[swapped ? 0 : 1], floor_hz, slope, err));
+    for (int i = 0; i < w->p->n; i++) {
+        slope[i] *= swapped ? -factor[0] : factor[1];
+    }
+    return add_other_slope(w, d, m->at[swapped ? 1 : 0], floor_hz,
+                           swapped ? factor[1] : -factor[0], slope, err);
+}
+
+/* With factors of d ln f: of 100 (g / s - 1) both are 100 g / s, of g - s they are s and g. */
+static mt_status evaluate_apart(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                                double *slope, mt_err *err)
+{
+    const mt_analysis *const a = w->views[d->view].analysis;
+    int pos_of = -1;
+    double of = nan("");
+    MT_TRY(find_other(w, d, &pos_of, &of, err));
+    const double own = mt_modal_hz(&a->modes, pos);
+    const bool swapped = d->named >= 0 || d->of.named >= 0 ? own < of : false;
+    const two_modes m = {.at = {swapped ? pos : pos_of, swapped ? pos_of : pos},
+                         .hz = {swapped ? own : of, swapped ? of : own},
+                         .sign = swapped ? -1.0 : 1.0};
+    const bool in_hz = MT_HAS(d->goal->at_least_hz);
+    const double part = m.hz[0] > 0.0 ? m.hz[1] / m.hz[0] : m.hz[1] > 0.0 ? HUGE_VAL : 1.0;
+    *q = in_hz ? m.hz[1] - m.hz[0] : PERCENT * (part - 1.0);
+    if (!(*q >= 0.0)) {
+        return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": a mode has no frequency",
+                       mt_analysis_configuration(a));
+    }
+    if (slope == NULL) {
+        return MT_OK;
+    }
+    if (isinf(part) && !in_hz) {
+        memset(slope, 0, (size_t)w->p->n * sizeof *slope);
+        return MT_OK;
+    }
+    const double factor[] = {in_hz ? m.hz[0] : PERCENT * part,
+                             in_hz ? m.hz[1] : PERCENT * part};
+    return apart_slope(w, d, &m, factor, slope, err);
+}
+
+static const char *apart_subject(const mt_requirement *d, const char *what, mt_arena *mem)
+{
+    return mt_arena_printf(mem, "%s: distance from %s", what, other_text(d, mem));
+}
+
+const mt_goal_ops mt_goal_apart = {.quantity = MT_QUANTITY_FREQUENCIES,
+                                   .value = evaluate_apart,
+                                   .subject = apart_subject,
+                                   .number = "distance",
+                                   .equals = "at"};
 
 static mt_status find_damped_mode(mt_workspace *w, const mt_requirement *d, int pos, int *at,
                                   mt_err *err)

@@ -117,13 +117,13 @@ static const char *instability(const mt_configuration_problem *view)
 
 /* Finds a mode by name: its index in the configuration's list. */
 static mt_status resolve_name(const mt_problem *p, const mt_configuration_problem *view,
-                              mt_requirement *d, mt_err *err)
+                              const mt_requirement *d, mt_requirement_mode *mode, mt_err *err)
 {
     const mt_model *const model = p->study->model;
-    const mt_named_mode *const wanted = &model->modes[d->goal->mode.named];
+    const mt_named_mode *const wanted = &model->modes[mode->asked->named];
     for (int i = 0; i < view->n_named; i++) {
-        if (view->named[i] == d->goal->mode.named) {
-            d->named = i;
+        if (view->named[i] == mode->asked->named) {
+            mode->named = i;
             return MT_OK;
         }
     }
@@ -144,15 +144,49 @@ static mt_status resolve_name(const mt_problem *p, const mt_configuration_proble
 /* A mode index must exist at some design; where the original design is unstable no mode has an
  * index, and enough degrees of freedom suffice. */
 static mt_status resolve_index(const mt_configuration_problem *view, const mt_requirement *d,
-                               mt_err *err)
+                               int mode, mt_err *err)
 {
     const int most = mt_configuration_vibrations(view);
-    if (d->mode <= most) {
+    if (mode <= most) {
         return MT_OK;
     }
     return mt_fail(err, MT_E_INPUT,
                    "/goals/%d: configuration \"%s\" has no vibration mode %d (it has %d)",
-                   d->goal_index, mt_analysis_configuration(view->original), d->mode, most);
+                   d->goal_index, mt_analysis_configuration(view->original), mode, most);
+}
+
+/* A mode of a requirement in its configuration. */
+static mt_status resolve_mode(const mt_problem *p, const mt_requirement *d,
+                              mt_requirement_mode *mode, mt_err *err)
+{
+    const mt_configuration_problem *const view = &p->views[mode->view];
+    return mode->mode > 0 ? resolve_index(view, d, mode->mode, err)
+                          : resolve_name(p, view, d, mode, err);
+}
+
+/* The modes of a requirement: that of its goal and what it is compared with, or the k-th of
+ * several with the one before. */
+static mt_status resolve_modes(mt_problem *p, mt_requirement *d, int k, mt_err *err)
+{
+    const mt_goal *const g = d->goal;
+    const bool listed = g->n_modes > 0;
+    const mt_mode_ref *const of = listed ? &g->modes[k] : &g->of.mode;
+    d->asked = listed ? &g->modes[k + 1] : &g->mode;
+    mt_requirement_mode own = {d->asked, d->view, d->asked->index, -1};
+    MT_TRY(resolve_mode(p, d, &own, err));
+    d->mode = own.mode;
+    d->named = own.named;
+    d->of = (mt_requirement_mode){of, -1, of->index, -1};
+    if (d->quantity != MT_QUANTITY_FREQUENCIES) {
+        return MT_OK;
+    }
+    d->of.view = d->view;
+    if (g->of.configuration != MT_ABSENT) {
+        MT_TRY(mt_err_in(err,
+                         mt_problem_add_configuration(p, g->of.configuration, &d->of.view, err),
+                         "/goals/%d", d->goal_index));
+    }
+    return resolve_mode(p, d, &d->of, err);
 }
 
 static void set_role(mt_problem *p, mt_requirement *d)
@@ -179,7 +213,8 @@ static void set_role(mt_problem *p, mt_requirement *d)
     }
 }
 
-static mt_status add_requirement(mt_problem *p, int goal_index, int configuration, mt_err *err)
+static mt_status add_requirement(mt_problem *p, int goal_index, int configuration, int k,
+                                 mt_err *err)
 {
     const mt_goal *const g = &p->study->goals[goal_index];
     mt_requirement *const d = &p->requirements[p->n_requirements];
@@ -190,18 +225,16 @@ static mt_status add_requirement(mt_problem *p, int goal_index, int configuratio
                           .goal = g,
                           .goal_index = goal_index,
                           .view = -1,
-                          .mode = g->mode.index,
+                          .asked = &g->mode,
                           .named = -1,
+                          .of = {.view = -1, .named = -1},
                           .node = MT_NO_NODE,
                           .equals = g->equals,
                           .size = 1.0};
     if (configuration != MT_ABSENT) {
         MT_TRY(mt_err_in(err, mt_problem_add_configuration(p, configuration, &d->view, err),
                          "/goals/%d", goal_index));
-        const mt_configuration_problem *const view = &p->views[d->view];
-        if (mt_requirement_is_modal(d)) {
-            MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
-        }
+        MT_TRY(mt_requirement_is_modal(d) ? resolve_modes(p, d, k, err) : MT_OK);
     }
     if (d->ops->compile != NULL) {
         const mt_status rc = d->ops->compile(p, d, err);
@@ -228,6 +261,10 @@ static void ask_view(const mt_problem *p, int index)
             view->ask.vectors = view->ask.vectors || shapes;
             first = d->mode > first ? d->mode : first;
         }
+        if (d->of.view == index) {
+            view->ask.vectors = view->ask.vectors || d->of.named >= 0;
+            first = d->of.mode > first ? d->of.mode : first;
+        }
     }
     for (int i = 0; i < p->n_avoidances; i++) {
         all = all || p->avoidances[i].view == index;
@@ -250,13 +287,17 @@ static mt_status add_goal(mt_problem *p, int i, mt_err *err)
 {
     const mt_goal *const g = &p->study->goals[i];
     if (g->n_configurations == 0) {
-        MT_TRY(add_requirement(p, i, MT_ABSENT, err));
+        MT_TRY(add_requirement(p, i, MT_ABSENT, 0, err));
     }
+    const int n_each = g->n_modes > 1 ? g->n_modes - 1 : 1;
     for (int k = 0; k < g->n_configurations; k++) {
         int view = -1;
         MT_TRY(g->avoid != NULL
                    ? mt_problem_add_configuration(p, g->configurations[k], &view, err)
-                   : add_requirement(p, i, g->configurations[k], err));
+                   : MT_OK);
+        for (int m = 0; m < n_each && g->avoid == NULL; m++) {
+            MT_TRY(add_requirement(p, i, g->configurations[k], m, err));
+        }
     }
     return MT_OK;
 }
@@ -266,7 +307,8 @@ static mt_status init_requirements(mt_problem *p, mt_err *err)
     const mt_study *const s = p->study;
     size_t most = 0;
     for (int i = 0; i < s->n_goals; i++) {
-        most += (size_t)s->goals[i].n_configurations + 1;
+        const size_t each = (size_t)(s->goals[i].n_modes > 1 ? s->goals[i].n_modes - 1 : 1);
+        most += ((size_t)s->goals[i].n_configurations * each) + 1;
     }
     p->requirements = mt_arena_alloc(&p->mem, most, sizeof *p->requirements);
     p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);

@@ -54,7 +54,8 @@ typedef struct mt_drive_positions mt_drive_positions;
 /* Kind of value that a requirement limits, which decides what is known of it over boxes of
  * designs and of its order over modes. */
 typedef enum mt_quantity {
-    MT_QUANTITY_FREQUENCY, /* of a mode */
+    MT_QUANTITY_FREQUENCY,   /* of a mode */
+    MT_QUANTITY_FREQUENCIES, /* made of those of two modes */
     MT_QUANTITY_EXPRESSION,
     MT_QUANTITY_OTHER
 } mt_quantity;
@@ -68,6 +69,14 @@ typedef enum mt_requirement_role {
     MT_ROLE_VIBRATION /* inequalities of the objective "vibration"; it limits nothing else */
 } mt_requirement_role;
 
+/* A mode that a requirement is about. */
+typedef struct mt_requirement_mode {
+    const mt_mode_ref *asked; /* as the study names it */
+    int view;                 /* its configuration; -1: there is no such mode */
+    int mode;                 /* 1-based index; 0: by name */
+    int named;                /* position in the configuration's list, where by name */
+} mt_requirement_mode;
+
 typedef struct mt_requirement {
     int index; /* in the subproblem's list */
     mt_requirement_role role;
@@ -77,12 +86,14 @@ typedef struct mt_requirement {
     mt_goal_measure measure;
     const mt_goal *goal;
     int goal_index;
-    int view;       /* configuration; -1: none, an expression */
-    int mode;       /* 1-based index; 0: by name */
-    int named;      /* position in the configuration's list, where by name */
-    int pair;       /* response, vibration: index of the port pair */
-    int first_mode; /* response over a band: its parts begin with this mode */
-    int n_rest;     /* static: 1, or 2 with a configuration whose value is subtracted */
+    int view;                 /* configuration; -1: none, an expression */
+    int mode;                 /* 1-based index; 0: by name */
+    int named;                /* position in the configuration's list, where by name */
+    const mt_mode_ref *asked; /* the mode as the study names it */
+    mt_requirement_mode of;   /* the other mode of two */
+    int pair;                 /* response, vibration: index of the port pair */
+    int first_mode;           /* response over a band: its parts begin with this mode */
+    int n_rest; /* static: 1, or 2 with a configuration whose value is subtracted */
     struct mt_rest_reading *rest; /* [n_rest] where they are read (goal_static.c); else NULL */
     int n_parts;  /* number of parts, one row each; 0: a single value, one row per limit */
     mt_node node; /* limit: node of the expressions' program */

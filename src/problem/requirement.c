@@ -39,6 +39,9 @@ static double off(const mt_workspace *w, const mt_requirement *d, double q, doub
 {
     const double unit = mt_requirement_unit(d, limit);
     *factor = 1.0 / unit;
+    if (isinf(q) && d->measure == MT_MEASURE_PART) { /* beside a mode at 0 Hz */
+        return MT_MOST_INSIDE;
+    }
     if (isinf(q) && d->goal->response_limit != NULL) {
         return MT_MOST_INSIDE + w->beyond;
     }
@@ -344,6 +347,7 @@ static mt_status add_positions(mt_subproblem *c, int n_cuts, const mt_cut *cuts,
         views[c->n_views] = view_at_cut(p, &cuts[i], &p->views[d->view]);
         *here = *d;
         here->index = c->n_requirements++;
+        here->of.view = d->of.view == d->view ? c->n_views : d->of.view;
         here->view = c->n_views++;
     }
     c->views = views;

@@ -17,6 +17,11 @@ static inline bool mt_requirement_is_frequency(const mt_requirement *d)
 {
     return d->quantity == MT_QUANTITY_FREQUENCY && d->mode > 0;
 }
+/* True where d limits what the frequencies of two modes by their indices make. */
+static inline bool mt_requirement_is_pair(const mt_requirement *d)
+{
+    return d->quantity == MT_QUANTITY_FREQUENCIES && d->mode > 0 && d->of.mode > 0;
+}
 /* True where the last coordinate is that of the objective "vibration" and has been given a
  * value. */
 static inline bool mt_forced_response_given(const mt_workspace *w)

@@ -159,7 +159,7 @@ static mt_status check_requirement(const mt_requirement *d, mt_err *err)
     if (d->role == MT_ROLE_RESIDUAL) {
         return MT_OK;
     }
-    if (d->quantity == MT_QUANTITY_OTHER) {
+    if (d->quantity == MT_QUANTITY_OTHER || d->quantity == MT_QUANTITY_FREQUENCIES) {
         return mt_fail(err, MT_E_INPUT,
                        "/goals/%d: a goal of type \"%s\" is not judged over "
                        "\"tolerance_percent\": give it a weight, or the variables no tolerance",
@@ -170,7 +170,7 @@ static mt_status check_requirement(const mt_requirement *d, mt_err *err)
                                  "/goals/%d: with \"tolerance_percent\" a mode is meant by its "
                                  "index, as frequencies keep their order over the tolerances: "
                                  "name its number instead of \"%s\"",
-                                 d->goal_index, d->goal->mode.mode_name.s);
+                                 d->goal_index, d->asked->mode_name.s);
 }
 
 /* True where a search can continue from a design that violates a corner. */

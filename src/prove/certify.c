@@ -20,6 +20,7 @@
  */
 #include "prove/certify.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -109,6 +110,101 @@ int mt_edges_count(mt_edges *d, int edge)
     return *known;
 }
 
+/* Pairs of modes, by the ranges of both over the box that is set. */
+
+/* Frequencies of the modes of each view over a box; hz NULL: nothing is known of it. */
+typedef struct view_ranges {
+    double **low; /* [n_views][n_modes] */
+    double **high;
+    bool *asked; /* [n_views] by a pair */
+} view_ranges;
+
+static mt_status ranges_init(view_ranges *r, const mt_certify *c, mt_arena *mem, mt_err *err)
+{
+    const size_t n = (size_t)c->n_views;
+    *r = (view_ranges){.low = mt_arena_alloc(mem, n, sizeof *r->low),
+                       .high = mt_arena_alloc(mem, n, sizeof *r->high),
+                       .asked = mt_arena_alloc(mem, n, sizeof *r->asked)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->n_pairs; i++) {
+        r->asked[c->pairs[i].view] = true;
+        r->asked[c->pairs[i].of_view] = true;
+    }
+    for (int v = 0; v < c->n_views; v++) {
+        const size_t modes = r->asked[v] ? (size_t)c->views[v]->n_modes : 0;
+        r->low[v] = mt_arena_f64(mem, modes, 1);
+        r->high[v] = mt_arena_f64(mem, modes, 1);
+    }
+    return mt_arena_check(mem, err);
+}
+
+/* Multiplications of one eigensolve without vectors, over n^3. */
+static const double EIGENSOLVE = 3.0;
+
+/* Over the box that is set in all views. Where it fails anything is possible. */
+static void ranges_find(view_ranges *r, const mt_certify *c)
+{
+    for (int v = 0; v < c->n_views; v++) {
+        mt_enclosure *const e = c->views[v];
+        mt_err own = {.code = MT_OK};
+        if (!r->asked[v]) {
+            continue;
+        }
+        const bool known = mt_enclosure_ranges(e, r->low[v], r->high[v], &own) == MT_OK;
+        e->operations += 2.0 * EIGENSOLVE * (double)e->n * (double)e->n * (double)e->n;
+        for (int k = 0; k < e->n_modes && !known; k++) {
+            r->low[v][k] = 0.0;
+            r->high[v][k] = HUGE_VAL;
+        }
+    }
+}
+
+static bool pair_exists(const mt_certify *c, const mt_certify_pair *p)
+{
+    return p->mode <= c->views[p->view]->n_modes && p->of_mode <= c->views[p->of_view]->n_modes;
+}
+
+/* *low ... *high: what the pair makes over the box, widened by the rounding of the quotient or
+ * the difference. */
+static void pair_range(const view_ranges *r, const mt_certify_pair *p, double *low,
+                       double *high)
+{
+    const double lowest = r->low[p->view][p->mode - 1];
+    const double highest = r->high[p->view][p->mode - 1];
+    const double of_lowest = r->low[p->of_view][p->of_mode - 1];
+    const double of_highest = r->high[p->of_view][p->of_mode - 1];
+    if (p->difference) {
+        *low = lowest - of_highest;
+        *high = highest - of_lowest;
+    } else {
+        *low = lowest > 0.0 ? lowest / of_highest : 0.0;
+        *high = of_lowest > 0.0 ? highest / of_lowest : HUGE_VAL;
+    }
+    *low -= DBL_EPSILON * fabs(*low);
+    *high += DBL_EPSILON * fabs(*high);
+}
+
+/* True where each pair can be met in the box; all: where all of the box meets it. */
+static bool pairs_met(view_ranges *r, const mt_certify *c, bool all)
+{
+    bool met = true;
+    for (int i = 0; i < c->n_pairs && met; i++) {
+        met = pair_exists(c, &c->pairs[i]);
+    }
+    if (met && c->n_pairs > 0) {
+        ranges_find(r, c);
+    }
+    for (int i = 0; i < c->n_pairs && met; i++) {
+        const mt_certify_pair *const p = &c->pairs[i];
+        double low = 0.0;
+        double high = 0.0;
+        pair_range(r, p, &low, &high);
+        met = all ? !(low < p->at_least) && !(high > p->at_most)
+                  : !(high < p->at_least) && !(low > p->at_most); /* NaN limits: always */
+    }
+    return met;
+}
+
 /* The search itself. */
 
 /* What a box costs beside its corners: bounds, the cap, the middle, the list of assignments; in
@@ -127,7 +223,8 @@ typedef struct search {
     int *tuple; /* [n_bands] work */
     int *single;
     mt_edges edges;
-    double *node_lo; /* [program.count] work */
+    view_ranges ranges; /* of pairs, work */
+    double *node_lo;    /* [program.count] work */
     double *node_hi;
     mt_boxes boxes;
     int n_known;
@@ -165,6 +262,7 @@ static mt_status alloc_search_arrays(search *s, mt_arena *work)
             s->previous[i] = c->bands[k].view == c->bands[i].view ? k : s->previous[i];
         }
     }
+    MT_TRY(ranges_init(&s->ranges, c, work, s->err));
     MT_TRY(mt_edges_init(&s->edges, c, work, s->err));
     return mt_boxes_init(&s->boxes, c, false, s->edges.n_known, work, s->err);
 }
@@ -419,7 +517,8 @@ static int count_placements_left(search *s)
     for (int i = 0; i < c->n_bands && possible; i++) {
         possible = band_possible(s, i);
     }
-    return possible && narrow(s) ? count_unknown_placements(s) : 0;
+    possible = possible && narrow(s) && pairs_met(&s->ranges, c, false);
+    return possible ? count_unknown_placements(s) : 0;
 }
 
 static bool same_counts(const search *s, const int *tuple)
@@ -483,7 +582,8 @@ static bool witnessed(search *s)
     const mt_boxes *const b = &s->boxes;
     return below_cap(s->c, b->middle, b->middle) && bounds_met(s, b->middle, b->middle, true) &&
            mt_certify_set(s->c, b->middle, b->middle) && limits_met(s) && bands_met(s) &&
-           same_counts(s, s->single) && !is_known_tuple(s, s->single);
+           pairs_met(&s->ranges, s->c, true) && same_counts(s, s->single) &&
+           !is_known_tuple(s, s->single);
 }
 
 static mt_status note_found(search *s)
@@ -734,6 +834,7 @@ static mt_status find_reachable_range(const mt_certify *c, int limit, mt_arena *
     }
     one.n_bands = 0;
     one.n_bounds = 0;
+    one.n_pairs = 0;
     one.limits = l;
     one.n_limits = 1;
     return mt_certify_possible(&one, NULL, scratch, &out->verdict, NULL, &out->boxes, err);
@@ -770,12 +871,25 @@ static mt_status any_missed(const mt_certify *c, int view, mt_arena *scratch, bo
     return MT_OK;
 }
 
+/* Pairs over the whole box. */
+static mt_status any_pair_missed(const mt_certify *c, mt_arena *scratch, bool *out, mt_err *err)
+{
+    view_ranges r;
+    if (c->n_pairs == 0) {
+        return MT_OK;
+    }
+    MT_TRY(ranges_init(&r, c, scratch, err));
+    *out = mt_certify_set(c, c->lower, c->upper) && !pairs_met(&r, c, false);
+    return MT_OK;
+}
+
 mt_status mt_certify_out_of_reach(const mt_certify *c, mt_arena *scratch, bool *out,
                                   mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     mt_status rc = MT_OK;
     *out = false;
+    rc = any_pair_missed(c, scratch, out, err);
     for (int v = 0; v < c->n_views && rc == MT_OK && !*out; v++) {
         rc = any_missed(c, v, scratch, out, err);
     }

@@ -30,6 +30,17 @@ typedef struct mt_certify_limit {
     double tolerance; /* relative */
 } mt_certify_limit;
 
+/* Limits of what two modes make (NaN: none), already widened by the caller's tolerance. */
+typedef struct mt_certify_pair {
+    int view;
+    int mode; /* from 1 */
+    int of_view;
+    int of_mode;
+    bool difference; /* of the frequencies [Hz]; else their ratio */
+    double at_least;
+    double at_most;
+} mt_certify_pair;
+
 /* Limits of an expression's value (NaN: none), already widened by the caller's absolute
  * tolerance. */
 typedef struct mt_certify_bound {
@@ -63,6 +74,8 @@ typedef struct mt_certify {
     const int *same_as;
     int n_limits;
     const mt_certify_limit *limits;
+    int n_pairs;
+    const mt_certify_pair *pairs;
     const mt_program *program; /* of the bounds; NULL where there are none */
     int n_bounds;
     const mt_certify_bound *bounds;
@@ -177,9 +190,9 @@ typedef struct mt_certify_reach {
 } mt_certify_reach;
 mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
                               mt_certify_reach *out, mt_err *err);
-/* *out is true where any limit of c alone is out of reach over the whole box, by these ranges
- * without branch and bound. True is proven. Cost: two eigensolves per view with limits. Fails:
- * MT_E_MEMORY, numerical failures of LAPACK. */
+/* *out is true where any limit or pair of c alone is out of reach over the whole box, by these
+ * ranges without branch and bound. True is proven. Cost: two eigensolves per view with limits
+ * or pairs. Fails: MT_E_MEMORY, numerical failures of LAPACK. */
 mt_status mt_certify_out_of_reach(const mt_certify *c, mt_arena *scratch, bool *out,
                                   mt_err *err);
 

@@ -79,8 +79,11 @@ typedef struct mt_result_goal {
     const char *configuration; /* NULL: none, or several */
     int mode;                  /* index of the mode that the goal names; 0: by name, or none */
     const char *name;          /* name of the mode that the goal names; NULL */
-    const char *reference;     /* reference or measurement to compare with; NULL */
-    const char *expression;    /* of a limit; NULL */
+    const char *of_configuration; /* of the other mode of two; NULL: there is none */
+    long of_mode;                 /* its index; 0: by name, or none */
+    const char *of_name;          /* its name; NULL */
+    const char *reference;        /* reference or measurement to compare with; NULL */
+    const char *expression;       /* of a limit; NULL */
     /* unit of value, target and limits; "": none; NULL: the expression's own */
     const char *unit;
     const char *display_unit; /* as in mt_result_parameter */

@@ -570,7 +570,7 @@ static void choose_modes(const mt_modes *modes, const edges *e, mt_guards *g)
 /* Adds to opt the modes that a goal and its guards need. */
 static void guards_query(const mt_requirement *d, mt_analysis_options *opt)
 {
-    const int most = d->mode + 1;
+    const int most = (d->mode > d->of.mode ? d->mode : d->of.mode) + 1;
     opt->gradient = true;
     opt->modes.first =
         opt->modes.first > 0 && opt->modes.first < most ? most : opt->modes.first;
@@ -578,12 +578,26 @@ static void guards_query(const mt_requirement *d, mt_analysis_options *opt)
         opt->shapes.first > 0 && opt->shapes.first < most ? most : opt->shapes.first;
 }
 
+/* Modes are sorted: where two cross, both are others. */
+static void add_neighbours(mt_guards *g, int mode)
+{
+    g->items[g->n++] = (mt_guard){.mode = mode + 1, .beside = mode};
+    g->last = mode + 1 > g->last ? mode + 1 : g->last;
+    if (mode > 1) {
+        g->items[g->n++] = (mt_guard){.mode = mode, .beside = mode - 1};
+        g->first = mode - 1 < g->first ? mode - 1 : g->first;
+    }
+}
+
 /* Guards of a requirement, for the modes of the solved analysis. Fails: MT_E_MEMORY. */
 static mt_status guards_init(const mt_requirement *d, const mt_analysis *a, mt_arena *mem,
                              mt_guards *out, mt_err *err)
 {
     edges e = {.n = 0};
-    *out = (mt_guards){.sys = a->sys, .first = d->mode, .last = d->mode};
+    const int other = d->of.mode > 0 ? d->of.mode : d->mode;
+    *out = (mt_guards){.sys = a->sys,
+                       .first = d->mode < other ? d->mode : other,
+                       .last = d->mode > other ? d->mode : other};
     if (d->goal->response_limit != NULL) {
         add_range(d->goal->response_limit, &e);
         choose_modes(&a->modes, &e, out);
@@ -592,7 +606,7 @@ static mt_status guards_init(const mt_requirement *d, const mt_analysis *a, mt_a
         add_edge(&e, d->goal->at_most);
     }
     const int n_modes = out->last - out->first + 1;
-    out->items = mt_arena_alloc(mem, ((size_t)n_modes * (size_t)e.n) + 2, sizeof *out->items);
+    out->items = mt_arena_alloc(mem, ((size_t)n_modes * (size_t)e.n) + 4, sizeof *out->items);
     out->log_hz = mt_arena_f64(mem, (size_t)n_modes + 2, 1);
     out->rate = mt_arena_f64(mem, (size_t)n_modes + 2, 1);
     MT_TRY(mt_arena_check(mem, err));
@@ -601,13 +615,10 @@ static mt_status guards_init(const mt_requirement *d, const mt_analysis *a, mt_a
             out->items[out->n++] = (mt_guard){.mode = mode, .log_edge = log(e.hz[i])};
         }
     }
-    if (d->goal->response_limit ==
-        NULL) { /* modes are sorted: where two cross, both are others */
-        out->items[out->n++] = (mt_guard){.mode = d->mode + 1, .beside = d->mode};
-        out->last = d->mode + 1;
-        if (d->mode > 1) {
-            out->items[out->n++] = (mt_guard){.mode = d->mode, .beside = d->mode - 1};
-            out->first = d->mode - 1;
+    if (d->goal->response_limit == NULL) {
+        add_neighbours(out, d->mode);
+        if (other != d->mode) {
+            add_neighbours(out, other);
         }
     }
     return MT_OK;

@@ -38,6 +38,8 @@ mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem,
     return mt_arena_check(mem, err);
 }
 
+static const double PERCENT = 100.0;
+
 /* Questions over boxes. */
 
 /* Spent with the first box. 0 would be the default of certify.h. */
@@ -163,7 +165,26 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
     proof->question.same_as = p->tie;
 }
 
-/* Frequency goals by index that are constraints, and limits on expressions. */
+/* A ratio, or a distance of one mode above another: in percent it is a ratio less 1. */
+static mt_certify_pair pair_of(const mt_requirement *d, double least, double most)
+{
+    const bool ratio = d->measure == MT_MEASURE_RATIO;
+    const bool in_hz = MT_HAS(d->goal->at_least_hz);
+    const double give = ratio ? 0.0 : d->tolerance;
+    const double part = ratio ? d->tolerance : 0.0;
+    const double low = (least * (1.0 - part)) - (give * mt_requirement_unit(d, least));
+    const double high = (most * (1.0 + part)) + (give * mt_requirement_unit(d, most));
+    const bool percent = !ratio && !in_hz;
+    return (mt_certify_pair){.view = d->view,
+                             .mode = d->mode,
+                             .of_view = d->of.view,
+                             .of_mode = d->of.mode,
+                             .difference = in_hz,
+                             .at_least = percent ? 1.0 + (low / PERCENT) : low,
+                             .at_most = percent ? 1.0 + (high / PERCENT) : high};
+}
+
+/* Goals of frequencies by index that are constraints, and limits on expressions. */
 static void list_limits(mt_proof *proof, const mt_problem *p)
 {
     mt_certify *const q = &proof->question;
@@ -183,11 +204,14 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
             proof->bounds[q->n_bounds++] = (mt_certify_bound){
                 d->node, least - (d->tolerance * mt_requirement_unit(d, least)),
                 most + (d->tolerance * mt_requirement_unit(d, most))};
+        } else if (mt_requirement_is_pair(d)) {
+            proof->pairs[q->n_pairs++] = pair_of(d, least, most);
         } else {
             proof->covers = false;
         }
     }
     q->limits = proof->limits;
+    q->pairs = proof->pairs;
     q->bounds = proof->bounds;
     q->program = q->n_bounds > 0 ? &p->program : NULL;
 }
@@ -203,6 +227,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, 
     proof->bands = mt_arena_alloc(mem, n_bands, sizeof *proof->bands);
     proof->bases = mt_arena_alloc(mem, n_bands, sizeof *proof->bases);
     proof->limits = mt_arena_alloc(mem, n_requirements, sizeof *proof->limits);
+    proof->pairs = mt_arena_alloc(mem, n_requirements, sizeof *proof->pairs);
     proof->bounds = mt_arena_alloc(mem, n_requirements, sizeof *proof->bounds);
     proof->limit_requirement = mt_arena_int(mem, n_requirements);
     proof->lower = mt_arena_f64(mem, n, 1);
@@ -238,7 +263,8 @@ mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, 
 /* Multiplications of branch and bound: a millisecond, or a box. */
 static const double LITTLE = 1e6;
 
-/* A limit on an expression is not known by its requirement: where one is left out, all are. */
+/* Limits on expressions and on pairs of modes are not known by their requirement: where one is
+ * left out, all are. */
 static void leave_out_requirement(mt_proof *proof, int requirement)
 {
     mt_certify *const c = &proof->question;
@@ -250,6 +276,7 @@ static void leave_out_requirement(mt_proof *proof, int requirement)
     }
     c->n_limits = n;
     c->n_bounds = requirement >= 0 ? 0 : c->n_bounds;
+    c->n_pairs = requirement >= 0 ? 0 : c->n_pairs;
 }
 
 static mt_status prove_infeasible(const mt_infeasible_presolve_question *q, mt_proof *proof,
@@ -258,7 +285,7 @@ static mt_status prove_infeasible(const mt_infeasible_presolve_question *q, mt_p
     const mt_certify *const c = &proof->question;
     mt_certify_search found = {0};
     MT_TRY(mt_certify_out_of_reach(c, mem, out, err));
-    if (*out || c->n_bands + c->n_limits + c->n_bounds == 0) {
+    if (*out || c->n_bands + c->n_limits + c->n_pairs + c->n_bounds == 0) {
         return MT_OK;
     }
     MT_TRY(mt_proof_query(proof, q->most > 0.0 ? q->most : LITTLE, mem, &found, err));

@@ -8,7 +8,8 @@
 
 /*
  * A subproblem as a question for proofs: an enclosure of every configuration, its bands, the
- * limits and targets of its frequency goals, and the limits on expressions. Goals that no proof
+ * limits and targets of its frequency goals and of ratios and distances of frequencies, and the
+ * limits on expressions. Goals that no proof
  * covers (shapes, MAC, modes by name) are left out, so that "impossible" remains true.
  */
 typedef struct mt_proof {
@@ -18,6 +19,7 @@ typedef struct mt_proof {
     mt_certify_band *bases; /* without margin */
     mt_certify_limit *limits;
     int *limit_requirement; /* [n_limits] index of the requirement */
+    mt_certify_pair *pairs;
     mt_certify_bound *bounds;
     double *lower; /* [n] parameter values */
     double *upper;

@@ -38,6 +38,7 @@ const mt_key *mt_goal_member(const mt_goal_kind *kind, mt_goal_slot slot)
         [MT_SLOT_AT_LEAST] = offsetof(mt_goal_parts, goal.at_least),
         [MT_SLOT_AT_MOST] = offsetof(mt_goal_parts, goal.at_most),
         [MT_SLOT_MARGIN] = offsetof(mt_goal_parts, avoid.source.margin_percent),
+        [MT_SLOT_AT_LEAST_HZ] = offsetof(mt_goal_parts, goal.at_least_hz),
     };
     for (int i = 0; i < kind->members->n; i++) {
         const mt_key *const key = &kind->members->keys[i];
@@ -52,6 +53,12 @@ const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot)
 {
     const mt_key *const key = mt_goal_member(kind, slot);
     return key == NULL ? NULL : key->name;
+}
+
+const char *mt_goal_number_name(const mt_goal *goal, mt_goal_slot slot)
+{
+    const bool in_hz = slot == MT_SLOT_AT_LEAST && MT_HAS(goal->at_least_hz);
+    return mt_goal_member_name(mt_goal_kind_of(goal->type), in_hz ? MT_SLOT_AT_LEAST_HZ : slot);
 }
 
 double mt_measure_unit(mt_goal_measure measure, double asked)
@@ -98,6 +105,9 @@ const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
     if (goal->static_limit != NULL) {
         return goal->static_limit->unit;
     }
+    if (MT_HAS(goal->at_least_hz)) {
+        return "Hz";
+    }
     return other != NULL ? other->si : mt_goal_kind_of(goal->type)->unit;
 }
 
@@ -109,6 +119,8 @@ static mt_goal new_goal(mt_goal_type type, mt_addr addr)
     return (mt_goal){
         .type = type,
         .mode = {.named = MT_ABSENT},
+        .of = {.configuration = MT_ABSENT, .mode = {.named = MT_ABSENT}},
+        .at_least_hz = nan(""),
         .equals = nan(""),
         .at_least = nan(""),
         .at_most = nan(""),
@@ -237,6 +249,51 @@ static void check_requirements(mt_study_check *c, const mt_goal *goal, const mt_
     }
 }
 
+static bool is_same_mode(const mt_mode_ref *a, const mt_mode_ref *b)
+{
+    return a->mode_name.s != NULL && b->mode_name.s != NULL
+               ? strcmp(a->mode_name.s, b->mode_name.s) == 0
+               : a->index > 0 && a->index == b->index;
+}
+
+/* The mode that a ratio is divided by. */
+static void check_of(mt_study_check *c, mt_goal *goal)
+{
+    mt_goal_of *const of = &goal->of;
+    (void)mt_check_mode(c, &of->mode);
+    of->configuration = mt_check_configuration(c, c->model, of->configuration_name);
+    for (int i = 0; i < goal->n_configurations; i++) {
+        const bool same =
+            of->configuration_name.s == NULL || of->configuration == goal->configurations[i];
+        if (same && is_same_mode(&goal->mode, &of->mode)) {
+            mt_diag_error(c->diags, goal_addr(c, goal, "of"),
+                          "the ratio of a frequency to itself is 1 whatever the design: name "
+                          "another mode or another configuration");
+            return;
+        }
+    }
+}
+
+/* The modes that are to be apart: indices ascend, names occur once. */
+static void check_modes(mt_study_check *c, mt_goal *goal)
+{
+    const mt_addr at = goal_addr(c, goal, "modes");
+    for (int i = 0; i < goal->n_modes; i++) {
+        mt_mode_ref *const mode = &goal->modes[i];
+        (void)mt_check_mode(c, mode);
+        for (int k = 0; k < i; k++) {
+            const mt_mode_ref *const before = &goal->modes[k];
+            if (is_same_mode(before, mode) && mode->index == 0) {
+                mt_diag_error(c->diags, at, "mode \"%s\" is named twice", mode->mode_name.s);
+            } else if (before->index > 0 && mode->index > 0 && before->index >= mode->index) {
+                mt_diag_error(c->diags, at, "mode %d comes after mode %d: indices must ascend",
+                              mode->index, before->index);
+                return;
+            }
+        }
+    }
+}
+
 static void check_goal(mt_study_check *c, mt_goal *goal)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
@@ -255,6 +312,12 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     }
     if (mt_goal_has(kind, "mode")) {
         index = mt_check_mode(c, &goal->mode);
+    }
+    if (mt_goal_has(kind, "of")) {
+        check_of(c, goal);
+    }
+    if (mt_goal_has(kind, "modes")) {
+        check_modes(c, goal);
     }
     if (mt_goal_has(kind, "reference")) {
         /* it gives a value, where the goal can ask for one, else a shape */

@@ -24,7 +24,9 @@
     X(FREQUENCY_RESPONSE, frequency_response, "", DIFFERENCE) \
     X(STATIC, static, "", PART)                               \
     X(LIMIT, limit, "", PART)                                 \
-    X(AVOID, avoid, "Hz", RATIO)
+    X(AVOID, avoid, "Hz", RATIO)                              \
+    X(RATIO, ratio, "", RATIO)                                \
+    X(APART, apart, "%", PART)
 #define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,
 typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
 #undef MT_GOAL_ENUM
@@ -37,6 +39,7 @@ typedef enum mt_goal_slot {
     MT_SLOT_AT_MOST,
     MT_GOAL_NUMBERS,
     MT_SLOT_MARGIN = MT_GOAL_NUMBERS, /* of the bands that are avoided */
+    MT_SLOT_AT_LEAST_HZ,              /* MT_SLOT_AT_LEAST by another member, in Hz */
     MT_SLOT_NONE
 } mt_goal_slot;
 
@@ -46,6 +49,13 @@ typedef struct mt_mode_ref {
     mt_name mode_name;
     int named; /* resolved named mode of the model; MT_ABSENT: by index */
 } mt_mode_ref;
+
+/* The mode whose frequency a ratio is divided by. */
+typedef struct mt_goal_of {
+    mt_name configuration_name;
+    int configuration; /* MT_ABSENT: that of the goal */
+    mt_mode_ref mode;
+} mt_goal_of;
 
 /* Default tolerance of a goal, in percent of its limit or target: far below what an engineer
  * can build, far above rounding. */
@@ -58,6 +68,12 @@ typedef struct mt_goal {
     int n_configurations;
     int *configurations;
     mt_mode_ref mode;
+    mt_goal_of of; /* ratio */
+    /* apart: modes in their order, each of which keeps its distance from the one before */
+    int n_modes;
+    mt_mode_ref *modes;
+    int up_to_mode;     /* 0: the modes are listed */
+    double at_least_hz; /* NaN: in percent; else also at_least */
     union {
         struct {
             double equals;   /* "target_hz", "equals" */
@@ -108,6 +124,8 @@ bool mt_goal_has(const mt_goal_kind *kind, const char *member);
 const mt_key *mt_goal_member(const mt_goal_kind *kind, mt_goal_slot slot);
 /* Its name in files; NULL: the kind has none. */
 const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
+/* The name of the member by which the goal gives a number, or could. */
+const char *mt_goal_number_name(const mt_goal *goal, mt_goal_slot slot);
 /* The scale of a deviation: what the difference v - asked is divided by. */
 double mt_measure_unit(mt_goal_measure measure, double asked);
 /* Tolerance of a goal as a fraction: tolerance_percent / 100. */
@@ -161,6 +179,8 @@ void mt_goal_finish(mt_reader *r, const mt_object *o, int which, void *item);
 #define MT_GOAL_KEYS(id, name, ...) extern const mt_key_table mt_goal_##name##_keys;
 MT_GOAL_LIST(MT_GOAL_KEYS)
 #undef MT_GOAL_KEYS
+
+extern const mt_key_table mt_study_goal_of_keys;
 
 struct mt_study_reader;
 struct mt_study_check;

@@ -150,6 +150,126 @@ const mt_key_table mt_goal_damping_keys = {
             "covers it.",
     .rules = MT_GOAL_ONE_OR_SEVERAL};
 
+/* "ratio" */
+
+static const mt_key OF[] = {
+    MT_S_MODE("mode", goal.of.mode, "Which mode: index from 1 or name."),
+    MT_M_REF("configuration", false, goal.of.configuration_name,
+             "Configuration of the model that it is taken in. Absent: that of the goal."),
+};
+const mt_key_table mt_study_goal_of_keys = {
+    .what = "goal_of",
+    .keys = OF,
+    .n = MT_COUNT(OF),
+    .says = "The mode whose frequency a ratio is divided by."};
+
+static const mt_key RATIO[] = {
+    MT_GOAL_ROWS(MT_GOAL_TOLERANCE),
+    MT_GOAL_CONFIGURATION_ROWS,
+    MODE_ROW("Whose frequency: index from 1 or name."),
+    {.name = "of",
+     .type = MT_KEY_OBJECT,
+     .required = true,
+     .read = mt_read_inner,
+     .of = &mt_study_goal_of_keys},
+    MT_S_NUMBER("target", false, goal.equals, POSITIVE,
+                "Wanted ratio, above 0; excludes the limits."),
+    MT_S_NUMBER("at_least", false, goal.at_least, POSITIVE, "Least ratio, above 0."),
+    MT_S_NUMBER("at_most", false, goal.at_most, POSITIVE, "Greatest ratio, above 0."),
+    MT_S_NUMBER("weight", false, goal.weight, POSITIVE,
+                "With a weight the goal is a residual of the objective \"misfit\", "
+                "ln(ratio/target), instead of a constraint."),
+};
+const mt_key_table mt_goal_ratio_keys = {
+    .what = "goal_ratio",
+    .keys = RATIO,
+    .n = MT_COUNT(RATIO),
+    .check = mt_goal_check,
+    .finish = mt_goal_finish,
+    .says = "The frequency of a mode divided by that of another mode, or of a mode in another "
+            "configuration: at a target, or within limits.",
+    .rules = MT_GOAL_ONE_OR_SEVERAL};
+
+/* "apart" */
+
+static void read_modes(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_goal *const goal = &((mt_goal_parts *)item)->goal;
+    mt_items items = mt_reader_items(r, value);
+    (void)key;
+    if (value != MT_NO_ADDR && items.count < 2) {
+        mt_diag_structure(r->diags, value, "must name at least two modes");
+    }
+    goal->modes = mt_reader_room(r, &items, sizeof *goal->modes);
+    while (mt_items_next(&items)) {
+        const mt_key one = {.type = MT_KEY_TEXT_OR_COUNT};
+        mt_mode_ref *const mode = &goal->modes[goal->n_modes];
+        *mode = (mt_mode_ref){.named = MT_ABSENT};
+        if (mt_reader_type(r, items.at, MT_KEY_TEXT_OR_COUNT)) {
+            mt_study_mode(r, &one, items.at, mode);
+            goal->n_modes++;
+        }
+    }
+}
+
+/* Neighbouring modes that one goal keeps apart. */
+enum { MT_MAX_APART = 1000 };
+
+static const mt_key APART[] = {
+    MT_GOAL_ROWS(MT_GOAL_TOLERANCE),
+    MT_GOAL_CONFIGURATION_ROWS,
+    {.name = "modes",
+     .type = MT_KEY_LIST,
+     MT_M_ROW(WHOLE),
+     MT_M_TO(read_modes, mt_mode_ref *, goal.modes),
+     .says = "Two modes or more, by ascending index from 1 or by name: each is apart from the "
+             "one before it in this list.",
+     .examples = "[[1, 2]]",
+     .schema = "\"type\": \"array\", \"minItems\": 2, \"items\": {\"$ref\": "
+               "\"#/definitions/mode\"}"},
+    MT_M_COUNT("up_to_mode", false, goal.up_to_mode, 2, MT_MAX_APART,
+               "All neighbouring modes from the first to this index are apart, instead of "
+               "\"modes\"."),
+    MT_S_NUMBER("at_least_percent", false, goal.at_least, POSITIVE,
+                "The higher frequency exceeds the lower one by at least this, in percent of "
+                "the lower one."),
+    MT_S_NUMBER("at_least_hz", false, goal.at_least_hz, POSITIVE,
+                "The two frequencies differ by at least this [Hz]."),
+};
+
+static void apart_check(mt_reader *r, mt_object *o)
+{
+    mt_goal_check(r, o);
+    (void)mt_object_one_of(r, o, "modes", 2);
+    (void)mt_object_one_of(r, o, "at_least_percent", 2);
+}
+
+/* A distance in Hz is the goal's number; all neighbours are the list of modes. */
+static void apart_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_goal *const goal = &((mt_goal_parts *)item)->goal;
+    mt_goal_finish(r, o, which, item);
+    goal->at_least = MT_HAS(goal->at_least_hz) ? goal->at_least_hz : goal->at_least;
+    if (goal->up_to_mode > 1 && goal->n_modes == 0) {
+        goal->modes = mt_arena_alloc(r->mem, (size_t)goal->up_to_mode, sizeof *goal->modes);
+        goal->n_modes = goal->modes == NULL ? 0 : goal->up_to_mode;
+    }
+    for (int i = 0; i < goal->n_modes && goal->up_to_mode > 1; i++) {
+        goal->modes[i] = (mt_mode_ref){.index = i + 1, .named = MT_ABSENT};
+    }
+}
+
+const mt_key_table mt_goal_apart_keys = {
+    .what = "goal_apart",
+    .keys = APART,
+    .n = MT_COUNT(APART),
+    .check = apart_check,
+    .finish = apart_finish,
+    .says = "Modes of one configuration whose frequencies are apart.",
+    .rules = "\"allOf\": [{\"oneOf\": [{\"required\": [\"modes\"]}, {\"required\": "
+             "[\"up_to_mode\"]}]}, {\"oneOf\": [{\"required\": [\"at_least_percent\"]}, "
+             "{\"required\": [\"at_least_hz\"]}]}], " MT_GOAL_ONE_OR_SEVERAL};
+
 /* "limit" */
 
 static const mt_key LIMIT[] = {

@@ -191,6 +191,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
                                                  &mt_study_published_keys,
                                                  &mt_study_published_frequency_keys,
                                                  &mt_study_published_mac_keys,
+                                                 &mt_study_goal_of_keys,
                                                  MT_GOAL_LIST(GOAL_KEYS)};
 #undef GOAL_KEYS
     *n = MT_COUNT(tables);

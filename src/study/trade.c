@@ -381,8 +381,12 @@ static mt_goal_slot slot_of(const mt_goal *goal, const char *name)
     for (int i = 0; i < MT_SLOT_NONE; i++) {
         const char *const member = mt_goal_member_name(kind, (mt_goal_slot)i);
         if (member != NULL && strcmp(member, name) == 0) {
-            const bool none = i < MT_GOAL_NUMBERS && !MT_HAS(goal->number[i]);
-            return none ? MT_SLOT_NONE : (mt_goal_slot)i;
+            const mt_goal_slot slot =
+                i == MT_SLOT_AT_LEAST_HZ ? MT_SLOT_AT_LEAST : (mt_goal_slot)i;
+            const bool none =
+                slot < MT_GOAL_NUMBERS && (!MT_HAS(goal->number[slot]) ||
+                                           strcmp(mt_goal_number_name(goal, slot), name) != 0);
+            return none ? MT_SLOT_NONE : slot;
         }
     }
     return MT_SLOT_NONE;

@@ -84,7 +84,7 @@ WRONG = {
     "factor": [(set_to(1), "error", "above 1"), (set_to(5000), "warning", "one goal alone")],
     "proof_s": [(set_to(-1), "error", "from 0 to 1e\\+06")],
     "target_hz": ASKED, "at_least_hz": ASKED, "at_most_hz": ASKED, "frequency_hz": POSITIVE,
-    "at_least": POSITIVE, "at_most": POSITIVE, "target": POSITIVE,
+    "at_least": POSITIVE, "at_most": POSITIVE, "target": POSITIVE, "at_least_percent": POSITIVE,
     ("goal_mac", "at_least"): SHARE, ("goal_damping", "at_least"): SHARE, ("goal_damping", "at_most"): SHARE, ("goal_damping", "target"): SHARE,
     ("goal_limit", "at_least"): [(beyond("at_most", 1), "error", "is not above")],
     ("goal_limit", "at_most"): [(beyond("at_least", -1), "error", "is not above")],

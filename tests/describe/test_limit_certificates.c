@@ -89,5 +89,44 @@ static void limits__that_contradict_each_other_are_proven_together(mt_test *t)
     study_free(&c);
 }
 
-MT_TEST_MAIN(MT_TEST(limits__that_contradict_each_other_are_proven_together),
+/* Equal masses in a row: with r = k2 / k1 the ratio of the frequencies is h + sqrt(h^2 - 1),
+ * h = (1 + 2 r) / (2 sqrt r), least at r = 1/2, where it is 1 + sqrt 2. */
+static void ratios__are_met_down_to_their_least_and_proven_impossible_below(mt_test *t)
+{
+    const double least = 1.0 + sqrt(2.0);
+    static const struct {
+        const char *goal;
+    } rows[] = {{"'type': 'ratio', 'mode': 2, 'of': {'mode': 1}, 'at_most'"},
+                {"'type': 'ratio', 'mode': 2, 'of': {'mode': 1}, 'target'"}};
+    for (int i = 0; i < 2 * MT_COUNT(rows); i++) {
+        const bool above = i >= MT_COUNT(rows);
+        const double asked = least * (above ? 1.0005 : 0.999);
+        study_case c;
+        char members[512];
+        bool proven = false;
+        mt_test_row(t, "%s: %.17g", rows[i % MT_COUNT(rows)].goal, asked);
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 20}, "
+                       "{'parameter': 'k2', 'lower': 0.2, 'upper': 5}], 'goals': [{%s: %.17g}]",
+                       rows[i % MT_COUNT(rows)].goal, asked);
+        if (study_solve(t, STUDY_TWO_MASSES("'k1': 3, 'k2': 1, 'm': 1", ""), members, &c)) {
+            const mt_recommendation *const r = &c.result->recommendations[0];
+            const double ratio = r->parameters[1].recommended / r->parameters[0].recommended;
+            const double h = (1.0 + (2.0 * ratio)) / (2.0 * sqrt(ratio));
+            CHECK(t, above == (c.result->status == MT_RESULT_SOLVED));
+            CHECK_NEAR(t, r->goals[0].value, h + sqrt((h * h) - 1.0), 1e-9);
+            CHECK_NEAR(t, r->goals[0].value, above ? asked : least, 2e-6);
+            for (int k = 0; k < c.result->n_certificates; k++) {
+                const mt_certificate *const own = &c.result->certificates[k];
+                proven = proven || (own->pointer == NULL && own->proven &&
+                                    strcmp(own->kind, "infeasible") == 0);
+            }
+            CHECK(t, proven != above);
+        }
+        study_free(&c);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(ratios__are_met_down_to_their_least_and_proven_impossible_below),
+             MT_TEST(limits__that_contradict_each_other_are_proven_together),
              MT_TEST(limits__cannot_be_met_beyond_their_tolerance_alone))

@@ -380,14 +380,17 @@ static void drive_member(walk *w, int table, int k, mt_addr value)
     bool judged = row->with == NULL || is_analysed(row->with);
     if (n == 0 || (w->driven[table][k] && !again) ||
         (key->possible == MT_POSSIBLE_WHOLE &&
-         mt_json_type_of(w->doc, value) != MT_JSON_NUMBER)) {
+         mt_json_type_of(w->doc, leaves[0]) != MT_JSON_NUMBER)) {
         return; /* a name of a mode, a rule of a catalogue */
     }
     for (int i = 0; i < n; i++) {
         mt_text pointer = {.s = NULL};
         mt_json_pointer(w->doc, leaves[i], &pointer);
         REQUIRE(w->t, pointer.s != NULL);
-        if (key->possible == MT_POSSIBLE_WHOLE) {
+        if (key->possible == MT_POSSIBLE_WHOLE &&
+            mt_json_type_of(w->doc, leaves[i]) != MT_JSON_NUMBER) {
+            judged = true; /* a name in a list of modes */
+        } else if (key->possible == MT_POSSIBLE_WHOLE) {
             drive_count(w, leaves[i], pointer.s);
             judged = true;
         } else if (i < 2) {

@@ -120,6 +120,7 @@ def goals(run):
             violation = float(np.max([np.max(np.where(np.isnan(v), np.inf, v)) for v in values])) if values else 0.0
             percent = max([float(np.max(q.percent(index, r[2], r[3], q.frequencies(x, c) if c else None))) for r in own], default=0.0)
             told = [g for g in rec["goals"] if g["pointer"] == f"/goals/{index}" and (c is None or c in g["goal"].split())]
+            told = [g for g in told if g["configuration"] == c] if goal["type"] in ("ratio", "apart") else told
             told = told or [g for g in rec["goals"] if g["pointer"] == f"/goals/{index}"]
             limit = q.tolerance_of(goal)
             if len(told) == 1 and math.isfinite(violation) and told[0]["violation_percent"] is not None:

@@ -56,10 +56,10 @@ def _slopes(run, change, start):
 def _goal_mover(index, text, sense):
     def change(study, fraction):
         goal = study["goals"][index]
-        members = [m for m in ("target_hz", "equals", "at_least_hz", "at_least", "at_most_hz", "at_most") if m in goal]
+        members = [m for m in ("target_hz", "target", "equals", "at_least_hz", "at_least_percent", "at_least", "at_most_hz", "at_most") if m in goal]
         member = members[0]
-        if member in ("target_hz", "equals"):
-            goal[member] *= np.exp(-sense * fraction) if member == "target_hz" else 1.0 - sense * fraction * np.sign(goal[member])
+        if member in ("target_hz", "target", "equals"):
+            goal[member] *= np.exp(-sense * fraction) if member != "equals" else 1.0 - sense * fraction * np.sign(goal[member])
         else:
             goal[member] += (-1.0 if "least" in member else 1.0) * fraction * (abs(goal[member]) or 1.0)
     return change

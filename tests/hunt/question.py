@@ -96,6 +96,11 @@ class Variable:
         return np.where(t < math.log(self.floor), self.floor * (1.0 + t - math.log(self.floor)), np.exp(t))
 
 
+def _mode(modes, index):
+    """One mode of many designs; NaN where there are not so many."""
+    return modes[:, index - 1] if index <= modes.shape[1] else np.full(len(modes), np.nan)
+
+
 class Question:
     def __init__(self, model, study, positions=POSITIONS):
         self.model, self.study, self.plant, self.positions = model, study, Plant(model), positions
@@ -112,7 +117,8 @@ class Question:
         self.objectives = self.objectives if isinstance(self.objectives, list) else [self.objectives]
         self.demands = [(i, g, c) for i, g in enumerate(self.goals) for c in self._configurations(g)]
         self.origin_t = self.t(self.origin[None, :]) if self.n else None
-        self.configurations = list(dict.fromkeys(c for _, g, c in self.demands if c is not None))
+        named = [c for _, g, c in self.demands if c is not None] + [g["of"]["configuration"] for g in self.goals if "configuration" in g.get("of", ())]
+        self.configurations = list(dict.fromkeys(named))
         self.bands = {c: self._bands(c) for c in self.configurations}
         self._rigid = {}
         self.moving = any("drive" in model.get("configurations", {}).get(c, {}) for c in self.configurations)
@@ -178,7 +184,20 @@ class Question:
                 inside = np.maximum(inside, np.max(band.inside(modes), axis=1))
             yield index, configuration, "band", np.where(np.isnan(modes[:, 0]), np.nan, inside)
             return
-        mode = modes[:, goal["mode"] - 1] if goal["mode"] <= modes.shape[1] else np.full(len(x), np.nan)
+        if goal["type"] == "ratio":
+            ratio = _mode(modes, goal["mode"]) / _mode(hz[goal["of"].get("configuration", configuration)], goal["of"]["mode"])
+            for member, sign in (("at_least", -1.0), ("at_most", 1.0), ("target", 0.0)):
+                if member in goal:
+                    yield index, configuration, "<" if sign else "=", (sign or 1.0) * np.log(ratio / goal[member])
+            return
+        if goal["type"] == "apart":
+            listed = goal.get("modes") or range(1, goal["up_to_mode"] + 1)
+            for low, high in itertools.pairwise(_mode(modes, m) for m in listed):
+                apart = high - low if "at_least_hz" in goal else 100.0 * (high / low - 1.0)
+                least = goal.get("at_least_hz") or goal["at_least_percent"]
+                yield index, configuration, "<", (least - apart) / least
+            return
+        mode = _mode(modes, goal["mode"])
         if "target_hz" in goal:
             yield index, configuration, "=", np.log(mode / goal["target_hz"])
         if "at_least_hz" in goal:
@@ -189,7 +208,7 @@ class Question:
     def percent(self, index, kind, value, modes=None):
         """A violation in percent of what is asked for; of a band how far the clearances of modes[B] fall short of their margins."""
         goal = self.goals[index]
-        if goal["type"] == "limit":
+        if goal["type"] in ("limit", "apart"):
             return 100.0 * (np.abs(value) if kind == "=" else np.maximum(value, 0.0))
         if kind == "band" and not self.robust:
             worst = np.zeros(len(value))
@@ -197,7 +216,7 @@ class Question:
                 for i in np.flatnonzero(value > 0.0):
                     worst[i] = max(worst[i], max(band.missing_percent(f) for f in modes[i]))
             return worst
-        if "at_least_hz" in goal and kind == "<" and "at_most_hz" not in goal:
+        if ("at_least_hz" in goal or "at_least" in goal) and kind == "<" and "at_most_hz" not in goal and "at_most" not in goal:
             return -100.0 * np.expm1(-np.maximum(value, 0.0))
         return 100.0 * np.abs(np.expm1(value)) if kind == "=" else 100.0 * np.expm1(np.maximum(value, 0.0))
 

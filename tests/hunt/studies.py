@@ -169,6 +169,38 @@ def corner(rng):
     return model, _study(model, variables, goals, rng.choice([None, None, None, {"minimise": "mass"}]))
 
 
+def pairs(rng):
+    """Ratios of modes, also between configurations, and modes that are apart: of a design within the bounds, or off it."""
+    model = models.MAKERS[rng.choice(list(models.MAKERS))](rng)
+    variables = _variables(rng, model)
+    configuration, other = _configuration(rng, model), _configuration(rng, model)
+    probe = _probe(model, variables, configuration)
+    x = _inner(rng, probe)
+    now, beside = _modes(probe, x, configuration), _modes(_probe(model, variables, other), x, other)
+    goals, off = [], rng.uniform(0.8, 1.25) if rng.random() < 0.25 else 1.0
+    for _ in range(rng.randint(1, 2)):
+        high = rng.randint(1, len(now))
+        low = rng.choice([m for m in range(1, len(beside) + 1) if m != high or configuration != other] or [0])
+        if low == 0 or rng.random() < 0.4:
+            if len(now) < 2:
+                continue
+            few = sorted(rng.sample(range(1, len(now) + 1), min(len(now), rng.choice([2, 2, 3]))))
+            goal = {"type": "apart", "modes": few} if rng.random() < 0.6 else {"type": "apart", "up_to_mode": few[-1]}
+            own = [now[m - 1] for m in goal.get("modes", range(1, few[-1] + 1))]
+            gap = min(b - a for a, b in zip(own, own[1:])) if rng.random() < 0.4 else None
+            part = min(100.0 * (b / a - 1.0) for a, b in zip(own, own[1:]))
+            if min(gap or 1.0, part) < 1e-3:
+                continue
+            goal.update({"at_least_percent": _round(part * off)} if gap is None else {"at_least_hz": _round(gap * off)})
+        else:
+            goal = {"type": "ratio", "mode": high, "of": {"mode": low} if configuration == other else {"mode": low, "configuration": other}}
+            ratio, kind = now[high - 1] / beside[low - 1] * off, rng.choice(["target", "at_least", "at_most", "range"])
+            goal.update({"at_least": _round(ratio * 0.99), "at_most": _round(ratio * 1.01)} if kind == "range" else {kind: _round(ratio, 8)})
+        goals.append(_named(goal, model, configuration))
+    goals = goals or _frequency_goals(rng, model, variables, ["least", "most"])
+    return model, _study(model, variables, goals, _objective(rng, model, variables))
+
+
 def bands(rng):
     model = models.MAKERS[rng.choice(["chain", "chain", "shaft", "truss", "loaded", "beads", "hanging"])](rng)
     variables = _variables(rng, model)
@@ -331,4 +363,4 @@ def zero(rng):
     return model, _study(model, variables, goals)
 
 
-KINDS = {f.__name__: f for f in (targets, limits, corner, bands, catalogue, mixed, branched, tolerance, trade, misfit, driven, infeasible, zero)}
+KINDS = {f.__name__: f for f in (targets, limits, pairs, corner, bands, catalogue, mixed, branched, tolerance, trade, misfit, driven, infeasible, zero)}

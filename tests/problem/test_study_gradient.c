@@ -200,6 +200,99 @@ static void named_and_repeated_modes__have_exact_gradients(mt_test *t)
     compiled_free(&s);
 }
 
+/* Ratios and distances by index and by name, in one configuration and between two; of names one
+ * that is in order and one that is not. */
+static void frequencies_of_two_modes__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t,
+                STUDY_TWO_MASSES("'k1': '2*p*q', 'k2': 1, 'm': 1, 'p': 2, 'q': 1",
+                                 ", 'configurations': {'bare': {}, 'soft': {'parameters': "
+                                 "{'p': 3}}}, 'modes': {'low': {'configuration': "
+                                 "'bare', 'index': 1}, 'high': {'configuration': 'bare', "
+                                 "'index': 2}}"),
+                "'variables': [{'parameter': 'q', 'lower': 0.1, 'upper': 9},"
+                " {'parameter': 'k2', 'lower': 0.1, 'upper': 9},"
+                " {'parameter': 'm', 'lower': 0.1, 'upper': 9}],"
+                "'goals': [{'type': 'ratio', 'configuration': 'bare', 'mode': 2,"
+                " 'of': {'mode': 1}, 'target': 3},"
+                "{'type': 'ratio', 'configuration': 'bare', 'mode': 'low',"
+                " 'of': {'mode': 2, 'configuration': 'soft'}, 'at_least': 0.2, 'at_most': 1},"
+                "{'type': 'ratio', 'configurations': ['bare', 'soft'], 'mode': 1,"
+                " 'of': {'mode': 2}, 'target': 0.4, 'weight': 2},"
+                "{'type': 'apart', 'configuration': 'bare', 'modes': [1, 2],"
+                " 'at_least_percent': 40},"
+                "{'type': 'apart', 'configuration': 'soft', 'up_to_mode': 2,"
+                " 'at_least_hz': 0.1},"
+                "{'type': 'apart', 'configuration': 'bare', 'modes': ['high', 'low'],"
+                " 'at_least_hz': 0.1},"
+                "{'type': 'apart', 'configuration': 'bare', 'modes': ['low', 'high'],"
+                " 'at_least_percent': 50}],"
+                "'objective': {'minimise': 'misfit'}",
+                &s)) {
+        double at[3] = {log(1.3), log(1.2), log(1.1)};
+        CHECK_INT(t, s.p->whole.rows.eq.n, 1);
+        CHECK_INT(t, s.p->whole.rows.in.n, 6);
+        CHECK_INT(t, s.p->whole.rows.res.n, 2);
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
+#define MET(name, x, y)                                                                      \
+    "{'name': 's" name "', 'type': 'axial', 'bodies': ['ground', 'm'], 'at': [['" x "', '" y \
+    "', 0], [0, 0, 0]], 'stiffness_n_per_m': 'k" name "'}"
+/* Three equal springs in a plane, their doubled angles a third of a turn apart: with v a change
+ * of ln k, both eigenvalues are 3 k / 2 and part by |sum k v_i exp(2 i theta_i)|, at most k
+ * sqrt(3/2) |v|. */
+static void modes_that_meet__have_a_slope_that_parts_them(mt_test *t)
+{
+    static const double STEP_APART = 1e-5;
+    compiled s;
+    if (compile(
+            t,
+            "{'format': 'modetune-model/1', 'dimension': 3, 'parameters': {'ka': 1, "
+            "'kb': 1, 'kc': 1}, 'bodies': [{'name': 'm', 'mass_kg': 1, 'centre': [0, 0, "
+            "0]}], 'springs': [" MET("a", "1", "0") "," MET("b", "0.5", "sqrt(0.75)") "," MET(
+                "c", "-0.5",
+                "sqrt(0.75)") ", {'name': 'across', 'type': 'axial', "
+                              "'bodies': ['ground', 'm'], 'at': [[0, 0, 1], [0, 0, 0]], "
+                              "'stiffness_n_per_m': 100}]}",
+            "'variables': [{'parameter': 'ka', 'lower': 0.1, 'upper': 9},"
+            " {'parameter': 'kb', 'lower': 0.1, 'upper': 9},"
+            " {'parameter': 'kc', 'lower': 0.1, 'upper': 9}],"
+            "'goals': [{'type': 'apart', 'modes': [1, 2], 'at_least_percent': 10},"
+            "{'type': 'apart', 'modes': [1, 2], 'at_least_hz': 0.01}]",
+            &s)) {
+        double at[3] = {0.0, 0.0, 0.0};
+        const double hz = study_hz(1.5);
+        const double most[] = {100.0 * sqrt(1.5) / 3.0 / 10.0, hz * sqrt(1.5) / 3.0 / 0.01};
+        double slope[2][3];
+        double met[2];
+        mt_nlp_values v;
+        CHECK_INT(t, mt_subproblem_values_init(s.w->c, &s.mem, &v, NULL), MT_OK);
+        CHECK_INT(t, mt_workspace_eval(s.w, at, true, &v, NULL), MT_OK);
+        for (int i = 0; i < 6; i++) {
+            slope[i % 2][i / 2] = v.din[i];
+        }
+        memcpy(met, v.in, sizeof met);
+        for (int row = 0; row < 2; row++) {
+            mt_test_row(t, "row %d", row);
+            const double size = mt_norm2(3, slope[row]);
+            CHECK_NEAR(t, size, most[row], 1e-9);
+            CHECK_NEAR(t, met[row], -1.0, 1e-9);
+            for (int side = -1; side <= 1; side += 2) { /* it parts them on both sides */
+                for (int i = 0; i < 3; i++) {
+                    at[i] = (double)side * STEP_APART * slope[row][i] / size;
+                }
+                CHECK_INT(t, mt_workspace_eval(s.w, at, false, &v, NULL), MT_OK);
+                CHECK_NEAR(t, (v.in[row] + 1.0) / STEP_APART, size, 1e-4);
+            }
+        }
+    }
+    compiled_free(&s);
+}
+
 /* Damping ratios by index, by name and as a residual, of loops under load, of everything that
  * damps. */
 static void damping__has_exact_gradients(mt_test *t)
@@ -380,7 +473,9 @@ static void measured_responses__have_exact_gradients(mt_test *t)
     compiled_free(&s);
 }
 
-MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
+MT_TEST_MAIN(MT_TEST(frequencies_of_two_modes__have_exact_gradients),
+             MT_TEST(modes_that_meet__have_a_slope_that_parts_them),
+             MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
              MT_TEST(shaken_goals__have_exact_gradients),
              MT_TEST(goals_at_rest__have_exact_gradients),
              MT_TEST(measured_responses__have_exact_gradients),

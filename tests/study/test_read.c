@@ -143,6 +143,40 @@ static void check_at_rest(mt_test *t, const mt_study *s)
     CHECK_NEAR(t, g[1].at_least, -2.0, TOL);
 }
 
+static void check_goals_of_two_modes(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = s->goals + 10;
+    CHECK_INT(t, g[0].type, MT_GOAL_RATIO);
+    CHECK_INT(t, g[0].of.configuration, mt_model_find_configuration(s->model, "bare"));
+    CHECK_INT(t, g[0].of.mode.index, 2);
+    CHECK_INT(t, g[0].of.mode.named, MT_ABSENT);
+    CHECK_INT(t, g[0].mode.named, mt_model_find_mode(s->model, "in phase"));
+    CHECK_NEAR(t, g[0].equals, 0.6, TOL);
+    CHECK_NEAR(t, g[0].weight, 4.0, TOL);
+    CHECK_INT(t, g[1].of.configuration, MT_ABSENT);
+    CHECK_INT(t, g[1].of.mode.index, 1);
+    CHECK_INT(t, g[1].n_configurations, 2);
+    CHECK_NEAR(t, g[1].at_least, 1.5, TOL);
+    CHECK_NEAR(t, g[1].at_most, 4.0, TOL);
+    CHECK_INT(t, g[2].type, MT_GOAL_APART);
+    if (CHECK_INT(t, g[2].n_modes, 2)) {
+        CHECK_INT(t, g[2].modes[0].index, 1);
+        CHECK_INT(t, g[2].modes[1].named, mt_model_find_mode(s->model, "in phase"));
+    }
+    CHECK_NEAR(t, g[2].at_least, 5.0, TOL);
+    CHECK(t, !MT_HAS(g[2].at_least_hz) && !MT_HAS(g[2].at_most) && !MT_HAS(g[2].equals));
+    CHECK_STR(t, mt_study_goal_unit(s, &g[2]), "%");
+    CHECK_STR(t, mt_goal_number_name(&g[2], MT_SLOT_AT_LEAST), "at_least_percent");
+    if (CHECK_INT(t, g[3].n_modes, 3)) {
+        CHECK_INT(t, g[3].modes[2].index, 3);
+        CHECK_INT(t, g[3].modes[2].named, MT_ABSENT);
+    }
+    CHECK_NEAR(t, g[3].at_least, 0.01, TOL);
+    CHECK_NEAR(t, g[3].at_least_hz, 0.01, TOL);
+    CHECK_STR(t, mt_study_goal_unit(s, &g[3]), "Hz");
+    CHECK_STR(t, mt_goal_number_name(&g[3], MT_SLOT_AT_LEAST), "at_least_hz");
+}
+
 static void check_measured(mt_test *t, const mt_study *s)
 {
     const mt_goal *const g = &s->goals[7];
@@ -239,7 +273,8 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.max_modal_solutions, 90000);
     CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
     CHECK_NEAR(t, s->weight_sensitivity.factor, 4.0, 0.0);
-    if (CHECK_INT(t, s->n_goals, 10)) {
+    if (CHECK_INT(t, s->n_goals, 14)) {
+        check_goals_of_two_modes(t, s);
         check_frequency_goals(t, s);
         check_other_goals(t, s);
         check_measured(t, s);

@@ -101,6 +101,15 @@ static const struct {
      "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14]]}, {'type': 'frequency', 'mode': 2, "
      "'at_least_hz': 0.2},"
      "{'type': 'limit', 'expression': 'k1*k2', 'at_most': 30}]"},
+    {"ratios and distances of frequencies", ROW(""),
+     TWO QUICK "'goals': [{'type': 'ratio', 'mode': 2, 'of': {'mode': 1}, 'at_most': 2.6},"
+               "{'type': 'apart', 'up_to_mode': 2, 'at_least_hz': 0.25}]"},
+    {"a ratio that no design has", ROW(""),
+     TWO QUICK "'goals': [{'type': 'ratio', 'mode': 2, 'of': {'mode': 1}, 'target': 1.5}]"},
+    {"trade over a distance", ROW(""),
+     TWO QUICK "'goals': [{'type': 'apart', 'modes': [1, 2], 'at_least_percent': 150}],"
+               "'trade': {'vary': [{'goal': 0, 'member': 'at_least_percent', 'values': [150, "
+               "250]}]}"},
     {"catalogues", ROW(""),
      "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3, 4]}, {'parameter': 'k2', "
      "'catalogue': {'series': 'E3', 'lower': 0.5, 'upper': 5}}]," QUICK
