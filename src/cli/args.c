@@ -61,6 +61,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "complex modes too, with all damping (dampers, damping ratios, loss factors): "
            "natural and damped frequencies, damping ratios; a real root is overdamped (CSV: "
            "these modes alone)"),
+    OPTION(MT_OPT_EFFECTIVE_MASS, '\0', "effective-mass", NULL, BIT(MT_CMD_MODES),
+           "participation factors and effective modal masses of each mode for a ground that "
+           "moves along and about the global axes, their sums, and the mass in all"),
+    OPTION(MT_OPT_ABOUT, '\0', "about", "X,Y,Z", BIT(MT_CMD_MODES),
+           "with --effective-mass: the point that rotations of the ground are about, in m "
+           "(default: 0,0,0, the origin)"),
     OPTION(MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
            "the joint (or a link's hinge) that is driven, through N positions counted from the "
            "reference position, in rad or m or the model's units; FROM and TO may be "
@@ -437,6 +443,23 @@ static bool read_below(const char *s, double most, double *out)
            *out >= 0.0 && *out < most;
 }
 
+/* "0.1,0,-2e-3": three coordinates. */
+static mt_status read_point(const char *s, const char *option, double out[3], mt_err *err)
+{
+    const char *at = s;
+    bool good = strspn(s, "0123456789.eE+-,") == strlen(s);
+    for (int i = 0; i < 3 && good; i++) {
+        char *end = NULL;
+        out[i] = strtod(at, &end);
+        good = end != at && *end == (i < 2 ? ',' : '\0') && isfinite(out[i]);
+        at = end + 1;
+    }
+    return good ? MT_OK
+                : mt_fail(err, MT_E_USAGE,
+                          "--%s: \"%s\" is not a point X,Y,Z, three numbers of metres", option,
+                          s);
+}
+
 static mt_status read_absolute(const char *s, double *out, mt_err *err)
 {
     return read_below(s, HUGE_VAL, out)
@@ -643,6 +666,8 @@ static mt_status store_option_value(mt_args *args, int option, const char *value
         return MT_OK;
     }
     switch (option) {
+    case MT_OPT_ABOUT:
+        return read_point(value, o->name, args->about_m, err);
     case MT_OPT_POINTS:
         return read_count(value, o->name, MT_CURVE_MOST, &args->points, err);
     case MT_OPT_KEEP:

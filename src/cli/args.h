@@ -21,6 +21,8 @@ typedef enum mt_option_id {
     MT_OPT_COUNT,
     MT_OPT_SHAPES,
     MT_OPT_DAMPED,
+    MT_OPT_EFFECTIVE_MASS,
+    MT_OPT_ABOUT,
     MT_OPT_DRIVE,
     MT_OPT_HOLD,
     MT_OPT_FREQUENCIES,
@@ -229,6 +231,7 @@ struct mt_args {
     double dt_out_s;   /* --dt-out, 0: not given */
     double tolerance;  /* --tolerance, 0: not given */
     double proof_s;    /* --proof; valid where given */
+    double about_m[3]; /* --about, default the origin */
     unsigned long seed;  /* --seed; valid where given */
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
     int points;          /* --points, 0: not given */

@@ -96,13 +96,25 @@ static bool any_rough(const mt_modes_view *v)
 }
 
 /* A table of CSV: each row behind its configuration, its shape behind it. */
-static mt_table csv_table(const mt_mode_shapes *shapes)
+static mt_table csv_table(const mt_modes_view *v)
 {
+    const mt_mode_shapes *const shapes = &v->shapes;
     mt_table t = mt_table_default();
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
     mt_table_record_columns(&t, &mode_rows, MT_IN_CSV);
     for (int k = 0; k < shapes->n; k++) {
         mt_table_column(&t, shapes->name[k], shapes->head[k], MT_ALIGN_POINT);
+    }
+    for (int k = 0; k < v->n_effective; k++) {
+        const mt_effective_row *const e = &v->effective[k];
+        const bool turns = e->direction[0] == 'r';
+        char name[48];
+        (void)mt_snprintf(name, sizeof name, "participation_%s_%s", e->direction,
+                          turns ? "m_sqrt_kg" : "sqrt_kg");
+        mt_table_column(&t, name, name, MT_ALIGN_POINT);
+        (void)mt_snprintf(name, sizeof name, "effective_mass_%s_%s", e->direction,
+                          turns ? "kg_m2" : "kg");
+        mt_table_column(&t, name, name, MT_ALIGN_POINT);
     }
     return t;
 }
@@ -115,6 +127,10 @@ static void csv_rows(const mt_modes_view *v, mt_table *t)
         mt_table_record_row(t, &mode_rows, MT_IN_CSV, &row);
         for (int k = 0; k < v->shapes.n; k++) {
             mt_table_number(t, mt_modes_component(&v->shapes, k, i), HZ_DIGITS);
+        }
+        for (int k = 0; k < v->n_effective; k++) {
+            mt_table_number(t, v->effective[k].participation[i], HZ_DIGITS);
+            mt_table_number(t, v->effective[k].mass[i], HZ_DIGITS);
         }
     }
 }
@@ -155,6 +171,50 @@ static void print_shapes(const mt_modes_view *v, mt_text *out)
                      "an index, by position) [1/sqrt(kg) and rad/(m sqrt(kg))]\n");
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
+}
+
+/* Modes with a row each, the directions beside each other; below them their sum and what there
+ * is in all. */
+static void print_effective(const mt_modes_view *v, mt_text *out)
+{
+    static const char *const below[] = {"sum", "total", "sum [%]"};
+    const double *const about = v->question.about_m;
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "mode", "mode", MT_ALIGN_LEFT);
+    for (int k = 0; k < v->n_effective; k++) {
+        char heading[32];
+        (void)mt_snprintf(heading, sizeof heading, "%s [%s]", v->effective[k].direction,
+                          v->effective[k].unit);
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+    }
+    for (int i = 0; i < v->shown; i++) {
+        char name[24];
+        const int index = mt_modes_index(v->m, i);
+        (void)mt_snprintf(name, sizeof name, index > 0 ? "%d" : "(%d)",
+                          index > 0 ? index : i + 1);
+        mt_table_text(&t, name);
+        for (int k = 0; k < v->n_effective; k++) {
+            mt_table_number(&t, v->effective[k].mass[i], HZ_DIGITS);
+        }
+    }
+    for (int row = 0; row < MT_COUNT(below); row++) {
+        mt_table_text(&t, below[row]);
+        for (int k = 0; k < v->n_effective; k++) {
+            const mt_effective_row *const e = &v->effective[k];
+            const double value = row == 0 ? e->sum : row == 1 ? e->total : e->sum_percent;
+            mt_table_number(&t, value, row == 2 ? 4 : HZ_DIGITS);
+        }
+    }
+    mt_text_addf(
+        out,
+        "\n  Effective modal masses for a ground that moves along the global axes, and "
+        "about them through (%.6g, %.6g, %.6g) m; numbers in parentheses: modes "
+        "without an index, by position\n",
+        about[0], about[1], about[2]);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+    mt_text_add(out, "  The total is what no fixed joints hold to the ground. What is guided "
+                     "rigidly along a direction has no mode in it.\n");
 }
 
 /* Note where modes are left out that were not declined by an option. */
@@ -237,6 +297,9 @@ static void text_view(const mt_modes_view *v, bool asked, mt_text *out)
     if (v->shapes.n > 0) {
         print_shapes(v, out);
     }
+    if (v->n_effective > 0) {
+        print_effective(v, out);
+    }
     if (v->question.damped) {
         damped_print(v->damped, v->question.count, out);
     }
@@ -269,7 +332,7 @@ static mt_status csv_view(sink *to, const mt_modes_view *v)
         return MT_OK;
     }
     if (to->table.n_columns == 0 && !to->table.failed) {
-        to->table = csv_table(&v->shapes);
+        to->table = csv_table(v);
         to->channels = v->shapes.n;
     }
     if (to->table.failed) {
@@ -288,10 +351,12 @@ static mt_status show_configuration_modes(void *context, mt_loaded_model *s, int
     (void)code;
     sink *const to = context;
     const mt_args *const args = to->args;
-    const mt_modes_question question = {.count = args->given[MT_OPT_COUNT] ? args->count
-                                                                           : MT_MODES_DEFAULT,
-                                        .shapes = args->given[MT_OPT_SHAPES],
-                                        .damped = args->given[MT_OPT_DAMPED]};
+    const mt_modes_question question = {
+        .count = args->given[MT_OPT_COUNT] ? args->count : MT_MODES_DEFAULT,
+        .shapes = args->given[MT_OPT_SHAPES],
+        .damped = args->given[MT_OPT_DAMPED],
+        .effective_mass = args->given[MT_OPT_EFFECTIVE_MASS],
+        .about_m = {args->about_m[0], args->about_m[1], args->about_m[2]}};
     mt_modes_view v = {.s = NULL};
     to->run.progress = mt_watch_begin(args, 0, "modes");
     mt_status rc = mt_modes_view_take(s, c, &question, &v, err);
@@ -329,6 +394,10 @@ static int run_modes(const mt_args *args, mt_text *out)
     sink to = {.args = args, .out = out, .w = mt_json_writer_default(out)};
     mt_profile counts;
     mt_profile *const profile = mt_cli_profile(args, &counts);
+    if (args->given[MT_OPT_ABOUT] && !args->given[MT_OPT_EFFECTIVE_MASS]) {
+        mt_terminal_error("--about goes with --effective-mass");
+        return MT_EXIT_INPUT;
+    }
     int code =
         mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
@@ -359,7 +428,14 @@ const mt_command mt_command_modes = {
         "bound of the error of its frequency (in JSON and CSV; in the table if it exceeds 1e-6 "
         "of the frequency) and its residual and orthogonality relative to rounding (about 1 is "
         "perfect). Redundant joints and the way to the equilibrium are listed. Shapes are "
-        "mass-normalised. Names of modes are shown if --set changes nothing.",
+        "mass-normalised. Names of modes are shown if --set changes nothing.\n"
+        "--effective-mass: with r the rigid motion of the ground and of everything with it, "
+        "a mass-normalised shape phi has the participation factor phi' M r and the effective "
+        "mass of its square. Springs and joints to the ground move with it, and so does a "
+        "locked "
+        "drive, which holds its position relative to its first body; loads and gravity stay as "
+        "they are. Over all modes the sum is the mass that moves (the moment of inertia about "
+        "the point of --about), except what a direction holds rigidly.",
     .answer = {&mt_modes_record, MT_ANSWER_CONFIGURATIONS},
     .run = run_modes,
 };

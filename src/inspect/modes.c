@@ -348,6 +348,77 @@ const mt_state *mt_modes_position(const mt_modes_view *v)
     return v->l != NULL ? mt_lowest_settled(v->l) : NULL;
 }
 
+/* Effective masses. */
+
+#define THIS mt_effective_row
+static const mt_field effective_fields[] = {
+    MT_F_TEXT("direction", direction,
+              "Of the ground: \"x\", \"y\", \"z\" along, \"rx\", \"ry\", \"rz\" about a global "
+              "axis."),
+    MT_F_TEXT("unit", unit, "Of the masses: \"kg\", about an axis \"kg m^2\"."),
+    MT_F_NUMBER("total", total,
+                "Mass, or moment of inertia, of all that no fixed joints hold to the ground."),
+    MT_F_NUMBER("sum", sum, "Sum of the effective masses of the modes that are listed."),
+    MT_F_NUMBER_OR_NULL("sum_percent", sum_percent,
+                        "That in percent of the total; null: the total is 0."),
+    MT_F_NUMBERS("participation", participation, n_modes,
+                 "Participation factor of each mode, in their order, of the mass-normalised "
+                 "shape [sqrt(kg) or m sqrt(kg)]."),
+    MT_F_NUMBERS("effective_mass", mass, n_modes,
+                 "Effective modal mass of each: the square of that."),
+};
+static const mt_record effective_record = MT_F_RECORD_OF(
+    effective_fields, "effective_mass", "What modes have of a ground that moves one way.");
+#undef THIS
+
+static void sum_effective(const mt_base_motion *b, int k, mt_effective_row *out)
+{
+    out->direction = mt_base_motion_name(b->axis[k]);
+    out->unit = b->axis[k] < 3 ? "kg" : "kg m^2";
+    out->total = b->total[k];
+    for (int i = 0; i < out->n_modes; i++) {
+        out->mass[i] = out->participation[i] * out->participation[i];
+        out->sum += out->mass[i];
+    }
+    out->sum_percent = out->total > 0.0 ? 100.0 * out->sum / out->total : nan("");
+}
+
+static mt_status find_effective(mt_modes_view *v, mt_err *err)
+{
+    const mt_system *const sys = v->l != NULL ? v->l->sys : v->a->sys;
+    const double *const inputs = v->l != NULL ? v->l->at : v->s->at;
+    const size_t shown = (size_t)v->shown;
+    double gamma[MT_BASE_MOTIONS];
+    mt_base_motion b;
+    double *const phi = mt_arena_f64(&v->mem, (size_t)sys->nq, shown);
+    MT_TRY(mt_arena_check(&v->mem, err));
+    MT_TRY(mt_base_motion_new(sys, mt_modes_position(v), inputs, v->question.about_m, &v->mem,
+                              &b, err));
+    if (v->l != NULL) {
+        MT_TRY(mt_lowest_shapes(v->l, v->shown, phi, err));
+    } else {
+        mt_linear_expand(v->a->lin, v->shown, v->a->modes.y, phi);
+    }
+    v->n_effective = b.n;
+    v->effective = mt_arena_alloc(&v->mem, (size_t)b.n, sizeof *v->effective);
+    for (int k = 0; k < b.n && v->effective != NULL; k++) {
+        v->effective[k].n_modes = v->shown;
+        v->effective[k].participation = mt_arena_f64(&v->mem, shown, 1);
+        v->effective[k].mass = mt_arena_f64(&v->mem, shown, 1);
+    }
+    MT_TRY(mt_arena_check(&v->mem, err));
+    for (int i = 0; i < v->shown; i++) {
+        mt_base_motion_participation(&b, sys->nq, phi + ((ptrdiff_t)i * sys->nq), gamma);
+        for (int k = 0; k < b.n; k++) {
+            v->effective[k].participation[i] = gamma[k];
+        }
+    }
+    for (int k = 0; k < b.n; k++) {
+        sum_effective(&b, k, &v->effective[k]);
+    }
+    return MT_OK;
+}
+
 #define THIS mt_equilibrium_row
 static const mt_field equilibrium_fields[] = {
     MT_F_FLAG("solved", solved, "Loads act, and their equilibrium was found."),
@@ -391,6 +462,13 @@ static const mt_field configuration_fields[] = {
               "The modes, lowest first: as many vibrations as --count says."),
     MT_F_LIST("damped_modes", damped, n_damped, mt_damped_row, mt_damped_record,
               "With --damped: the modes with damping.", MT_F_WHEN(with_damping)),
+    MT_F_NUMBERS("about_m", about_m, n_about,
+                 "With --effective-mass: the point that rotations of the ground are about [m].",
+                 MT_F_WHEN(with_effective)),
+    MT_F_LIST("effective_mass", effective, n_effective, mt_effective_row, effective_record,
+              "With --effective-mass: participation factors and effective modal masses, by "
+              "direction of the ground.",
+              MT_F_WHEN(with_effective)),
     MT_F_LIST_OR_NULL("redundant_constraints", redundant, n_redundant, mt_joints_row,
                       mt_joints_record,
                       "Sets of joints whose equations depend on each other; null: there are "
@@ -434,6 +512,11 @@ static mt_status modes_row_of(mt_modes_view *v, mt_modes_row *out, mt_err *err)
         .massless_directions = v->l == NULL ? m->n_condensed : -1,
         .n_modes = v->shown,
         .with_damping = v->question.damped,
+        .with_effective = v->n_effective > 0,
+        .effective = v->effective,
+        .n_effective = v->n_effective,
+        .n_about = 3,
+        .about_m = v->question.about_m,
         .equilibrium = equilibrium_row_of(v),
     };
     const mt_warning_list *const list = &v->warning_list;
@@ -499,7 +582,7 @@ static mt_status solve_modes(mt_modes_view *v, mt_err *err)
 {
     const mt_loaded_model *const s = v->s;
     const mt_modes_question *const q = &v->question;
-    const mt_lowest_want want = {.count = q->count, .shapes = q->shapes};
+    const mt_lowest_want want = {.count = q->count, .shapes = q->shapes || q->effective_mass};
     char why[MT_LOWEST_DAMPED_WHY] = "";
     bool is = true;
     MT_TRY(q->damped && q->count > 0 ? solve_few_damped(v, &is, why, err)
@@ -534,6 +617,7 @@ mt_status mt_modes_view_take(const mt_loaded_model *s, int c, const mt_modes_que
         MT_TRY(v->l != NULL ? shapes_of_lowest(v->l, v->shown, &v->mem, &v->shapes, err)
                             : shapes_of(v->a, v->shown, &v->mem, &v->shapes, err));
     }
+    MT_TRY(question->effective_mass ? find_effective(v, err) : MT_OK);
     return question->damped && v->l == NULL ? mt_analysis_damped(v->a, &v->damped, err) : MT_OK;
 }
 

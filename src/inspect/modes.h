@@ -6,6 +6,7 @@
 #include "base/diagnostics.h"
 #include "inspect/loaded_model.h"
 #include "io/write_json.h"
+#include "mechanics/base_motion.h"
 #include "mechanics/linear.h"
 
 /* Natural frequencies and shapes of one configuration, with or without damping: what `modes`
@@ -19,6 +20,8 @@ typedef struct mt_modes_question {
     int count;   /* of vibration modes to tell; 0 or INT_MAX: all */
     bool shapes; /* at the sensors, or without sensors motions of the bodies */
     bool damped; /* the modes with damping, too */
+    bool effective_mass;
+    double about_m[3]; /* that rotations of the ground are about */
 } mt_modes_question;
 
 /* Shapes of modes at the sensors, or, without sensors, as motions of the bodies. */
@@ -33,6 +36,18 @@ typedef struct mt_mode_shapes {
     double *largest;   /* [modes] largest displacement of a body or at a sensor */
 } mt_mode_shapes;
 
+/* What modes have of a ground that moves along or about one axis. */
+typedef struct mt_effective_row {
+    const char *direction; /* "x", "rz" */
+    const char *unit;      /* of masses: "kg", "kg m^2" */
+    double total;
+    double sum; /* of the modes that are told */
+    double sum_percent;
+    int n_modes;
+    double *participation; /* [n_modes] */
+    double *mass;          /* [n_modes] */
+} mt_effective_row;
+
 /* One configuration, solved. */
 typedef struct mt_modes_view {
     const mt_loaded_model *s;
@@ -43,6 +58,8 @@ typedef struct mt_modes_view {
     const mt_modes *m;     /* of one of them */
     int shown;             /* positions of modes to write */
     mt_mode_shapes shapes; /* n 0: not asked for */
+    int n_effective;       /* directions; 0: not asked for */
+    mt_effective_row *effective;
     const mt_damped_modes *damped;
     mt_lowest_damped few; /* of a large mechanism: `damped` is of these */
     mt_warning_list warning_list;
@@ -123,6 +140,11 @@ typedef struct mt_modes_row {
     bool with_damping;
     mt_damped_row *damped;
     int n_damped;
+    bool with_effective;
+    mt_effective_row *effective;
+    int n_effective;
+    int n_about;
+    double *about_m;
     mt_joints_row *redundant; /* NULL: not looked for */
     int n_redundant;
     mt_equilibrium_row equilibrium;
