@@ -78,6 +78,7 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
         mt_arena_alloc(&lin->geometry->mem, loaded ? (size_t)all : 0, sizeof *lambda);
     t->a = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, (size_t)nq);
     t->c = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, 1);
+    t->moved = mt_arena_f64(&lin->geometry->mem, (size_t)nq, 1);
     t->kg = loaded ? mt_arena_f64(&lin->geometry->mem, (size_t)nq, (size_t)nq) : NULL;
     MT_TRY(mt_arena_check(&lin->scratch, err));
     MT_TRY(mt_arena_check(&lin->geometry->mem, err));
@@ -95,6 +96,7 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
             t->a[i + (j * lin->m)] = l.a[i + (j * all)];
         }
     }
+    memcpy(t->moved, lin->position.d_pose, (size_t)nq * sizeof *t->moved);
     closing(lin, &l, t);
     t->moves = t->moves || !all_zero((size_t)lin->m * (size_t)nq, t->a);
     if (loaded) {

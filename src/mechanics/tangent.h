@@ -14,6 +14,7 @@ struct mt_linear_tangent {
     double *c;
     double terms;  /* largest sum of |terms| of an entry of c, in rows of unit length */
     double motion; /* length of the motion that the input causes, in scaled coordinates */
+    double *moved; /* [nq] that motion; NULL: no tangent */
     double *kg;    /* nq x nq; NULL without loads */
     mt_pose *pose; /* [bodies] with their derivatives; NULL without loads */
     mt_cx *lambda; /* [all constraints] with their derivatives; NULL without loads */

@@ -227,3 +227,84 @@ mt_status mt_modal_dvector_by_modes(const mt_modes *modes, int i, const mt_direc
     mt_arena_rewind(scratch, mark);
     return rc;
 }
+
+/* The adjoint of a cluster. */
+
+/* The modes that are summed over. */
+typedef struct cluster {
+    int first;
+    int size;
+    double lambda;
+} cluster;
+
+/* x = sum over the modes j outside of C of y_j (y_j . b) / (lambda_j - lambda). */
+static mt_status adjoint_by_modes(const mt_modes *modes, const cluster *c, const double *b,
+                                  double *x, mt_arena *scratch, mt_err *err)
+{
+    const int n = modes->n;
+    double *const part = mt_arena_f64(scratch, (size_t)modes->all, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    mt_gemv(true, n, modes->all, 1.0, modes->y, n, b, 0.0, part);
+    for (int j = 0; j < modes->all; j++) {
+        const bool own = j >= c->first && j < c->first + c->size;
+        part[j] = own ? 0.0 : part[j] / (modes->lambda[j] - c->lambda);
+    }
+    mt_gemv(false, n, modes->all, 1.0, modes->y, n, part, 0.0, x);
+    return MT_OK;
+}
+
+/* [D (K - lambda M) D / s  -D M Y; ...] [D^-1 x; c] = [D b / s; 0]. */
+static mt_status adjoint_bordered(const mt_pencil *p, const mt_modes *modes, const cluster *of,
+                                  const double *b, double *x, mt_arena *scratch, mt_err *err)
+{
+    const int n = p->n;
+    const int r = of->size;
+    const double lambda = of->lambda;
+    const int ld = n + r;
+    const double *const y = mt_modal_shape(modes, of->first);
+    bordered w = {.n = n, .lambda = lambda};
+    w.d = mt_arena_f64(scratch, (size_t)n, 1);
+    w.my = mt_arena_f64(scratch, (size_t)n, (size_t)r);
+    w.a = mt_arena_f64(scratch, (size_t)ld, (size_t)ld);
+    w.rhs = mt_arena_f64(scratch, (size_t)ld, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    choose_scales(p, &w);
+    mt_symm(n, r, p->m, y, w.my);
+    for (ptrdiff_t j = 0; j < n; j++) {
+        for (ptrdiff_t i = j; i < n; i++) {
+            const double e = p->k[i + (j * n)] - (lambda * p->m[i + (j * n)]);
+            w.a[i + (j * ld)] = w.d[i] * e * w.d[j] / w.s;
+        }
+        for (ptrdiff_t c = 0; c < r; c++) {
+            w.a[n + c + (j * ld)] = -w.d[j] * w.my[j + (c * n)];
+        }
+        w.rhs[j] = w.d[j] * b[j] / w.s;
+    }
+    mt_symmetrise_lower(ld, w.a);
+    double rcond = 0.0;
+    const mt_status rc = mt_lu_solve(ld, w.a, 1, w.rhs, &rcond, scratch, err);
+    if (rc == MT_E_SINGULAR || (rc == MT_OK && !(rcond > mt_modal_tolerance(n)))) {
+        return mt_fail(err, MT_E_SINGULAR,
+                       "another mode is as close as rounding: its share has no derivative");
+    }
+    MT_TRY(rc);
+    for (int i = 0; i < n; i++) {
+        x[i] = w.d[i] * w.rhs[i];
+    }
+    return MT_OK;
+}
+
+mt_status mt_modal_adjoint(const mt_pencil *p, const mt_modes *modes, int first, int r,
+                           const double *b, double *x, mt_arena *scratch, mt_err *err)
+{
+    const bool all = modes->n_condensed == 0 && modes->shaped == modes->all;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    cluster c = {.first = first, .size = r};
+    for (int i = 0; i < r; i++) {
+        c.lambda += modes->lambda[first + i] / r;
+    }
+    const mt_status rc = all ? adjoint_by_modes(modes, &c, b, x, scratch, err)
+                             : adjoint_bordered(p, modes, &c, b, x, scratch, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}

@@ -54,4 +54,17 @@ mt_status mt_modal_dvector(const mt_pencil *p, double lambda, const double *y,
                            const mt_directions *dir, double *dy, double *dlambda,
                            mt_arena *scratch, mt_err *err);
 
+/*
+ * Derivatives of sums over a cluster C (first, r modes; one mode, or several of one
+ * eigenvalue), of which the single vectors have none: with any Q, and b_i = (Q + Q^T) y_i,
+ *     d sum_i y_i^T Q y_i = sum_i [y_i^T dQ y_i - x_i . (dK - lambda dM) y_i
+ *                                  - 1/2 sum_k (y_k . b_i) (y_k . dM y_i)],
+ *     (K - lambda M) x_i = b_i - M Y_C Y_C^T b_i,   Y_C^T M x_i = 0.
+ * x := x_i of b, n entries each, for all inputs at once: by all modes where there are all
+ * vectors, otherwise by a bordered system (as above, with a column for each mode of C). Fails:
+ * MT_E_SINGULAR (another mode at rounding's distance), MT_E_MEMORY.
+ */
+mt_status mt_modal_adjoint(const mt_pencil *p, const mt_modes *modes, int first, int r,
+                           const double *b, double *x, mt_arena *scratch, mt_err *err);
+
 #endif
