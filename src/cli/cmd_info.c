@@ -47,6 +47,8 @@ typedef struct convention_list {
 
 /* So many lines tell people what is meant; a large model repeats itself. */
 enum { MOST_LINES = 24 };
+/* Components of unit vectors below this are rounding. */
+static const double ROUNDED = 1e-12;
 
 typedef struct writer {
     const mt_model *m;
@@ -205,16 +207,50 @@ static void write_axial(writer *w, const mt_spring *s)
     }
 }
 
+/* "along the drawing's x, y, z" or, of axes of its own, where these point. */
+static const char *axes_text(const writer *w, const mt_axes *axes)
+{
+    static const char *const names[] = {"x", "y", "z"};
+    const bool plane = w->m->dimension == 2;
+    const char *text = "along its own axes ";
+    double e[3][3];
+    if (!axes->given) {
+        return plane ? "along the drawing's x, y" : "along the drawing's x, y, z";
+    }
+    (void)mt_axes_of(axes, w->value, e);
+    for (int i = 0; i < w->m->dimension && text != NULL; i++) {
+        for (int k = 0; k < 3; k++) { /* what rounding leaves of 0 */
+            e[i][k] = fabs(e[i][k]) < ROUNDED ? 0.0 : e[i][k];
+        }
+        text = plane ? mt_arena_printf(w->out->mem, "%s%s%s (%.4g, %.4g)", text,
+                                       i > 0 ? ", " : "", names[i], e[i][0], e[i][1])
+                     : mt_arena_printf(w->out->mem, "%s%s%s (%.4g, %.4g, %.4g)", text,
+                                       i > 0 ? ", " : "", names[i], e[i][0], e[i][1], e[i][2]);
+    }
+    return text == NULL ? "" : text;
+}
+
 static void write_bushing(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, MT_ABSENT, s->bodies);
     const subject at = of_spring(w, s, s->n_at > 0 ? "at" : NULL, nan(""), of);
     add_convention(
         w, &at,
-        "%s \"%s\": along the drawing's x, y%s, carried by \"%s\"; about %s of \"%s\", where "
-        "its forces act on both",
-        s->damper ? "damper" : "spring", s->name.s, w->m->dimension == 2 ? "" : ", z", of.first,
+        "%s \"%s\": %s, carried by \"%s\"; about %s of \"%s\", where its forces act on both",
+        s->damper ? "damper" : "spring", s->name.s, axes_text(w, &s->axes), of.first,
         s->n_at > 0 ? "the point" : "the centre", of.second);
+}
+
+static void write_inertia_axes(writer *w)
+{
+    for (int i = 0; i < w->m->n_bodies; i++) {
+        const mt_body *const b = &w->m->bodies[i];
+        const subject at = {.list = "bodies", .index = i, .member = "axes", .value = nan("")};
+        if (mt_model_present(&b->in, w->configuration) && b->axes.given) {
+            add_convention(w, &at, "body \"%s\": inertia %s", b->name.s,
+                           axes_text(w, &b->axes));
+        }
+    }
 }
 
 static void write_springs(writer *w)
@@ -347,6 +383,7 @@ static void cli_find_conventions(const mt_model *model, int configuration, const
 {
     writer w = {.m = model, .configuration = configuration, .value = value, .out = out};
     write_drive(&w);
+    write_inertia_axes(&w);
     write_products(&w);
     write_sections(&w);
     write_gears(&w);

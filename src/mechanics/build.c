@@ -96,9 +96,9 @@ int mt_build_perp(mt_builder *b, int axis, int which)
     return add_vec(b, &def);
 }
 
-int mt_build_cross(mt_builder *b, int first, int second)
+int mt_build_cross(mt_builder *b, mt_vec_kind kind, int first, int second)
 {
-    const mt_vec_def def = {.kind = MT_VEC_CROSS,
+    const mt_vec_def def = {.kind = kind,
                             .node = {MT_NO_NODE, MT_NO_NODE, MT_NO_NODE},
                             .axis = first,
                             .helper = second,

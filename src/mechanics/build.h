@@ -34,7 +34,8 @@ void mt_build_coordinates(mt_builder *b, const mt_num x[3], mt_node out[3]);
 void mt_build_position(mt_builder *b, const mt_position *p, mt_node out[3]);
 int mt_build_vec(mt_builder *b, mt_vec_kind kind, const mt_node node[3], const char *what);
 int mt_build_perp(mt_builder *b, int axis, int which); /* which: 1, 2 */
-int mt_build_cross(mt_builder *b, int first, int second);
+/* kind: CROSS or ACROSS. */
+int mt_build_cross(mt_builder *b, mt_vec_kind kind, int first, int second);
 /* Vector from the centre of the body (or the ground's origin) to the position. */
 int mt_build_arm(mt_builder *b, int body, const mt_node at[3], const char *what);
 mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);

@@ -3,6 +3,66 @@
 #include "mechanics/build.h"
 #include "model/model.h"
 
+/*
+ * Axes of an item's own as unit vectors e0 e1 e2 (model.h: mt_axes). From x and y: e2 = x x y,
+ * e1 = e2 x e0; from x and z: e1 = z x x, e2 = e0 x e1; from angles the columns of Rz Ry Rx.
+ */
+static int unit_vec(mt_builder *b, const mt_num x[3], const char *what)
+{
+    mt_node node[3];
+    mt_build_coordinates(b, x, node);
+    return mt_build_vec(b, MT_VEC_UNIT, node, what);
+}
+
+static void turned_axes(mt_builder *b, const mt_axes *axes, const char *what, int e[3])
+{
+    mt_program *const p = &b->sys->program;
+    mt_node s[3] = {b->zero, b->zero, b->zero};
+    mt_node c[3] = {b->one, b->one, b->one};
+    for (int k = 0; k < axes->n_angles; k++) {
+        const mt_node angle = mt_build_num_or(b, axes->angles[k], b->zero);
+        const int about = axes->n_angles == 1 ? 2 : k;
+        s[about] = mt_program_unary(p, MT_OP_SIN, angle, MT_NO_ADDR);
+        c[about] = mt_program_unary(p, MT_OP_COS, angle, MT_NO_ADDR);
+    }
+    const mt_node both = mt_program_mul(p, s[0], s[1]);
+    const mt_node x[3] = {mt_program_mul(p, c[1], c[2]), mt_program_mul(p, c[1], s[2]),
+                          mt_program_unary(p, MT_OP_NEG, s[1], MT_NO_ADDR)};
+    const mt_node y[3] = {
+        mt_program_sub(p, mt_program_mul(p, both, c[2]), mt_program_mul(p, c[0], s[2])),
+        mt_program_add(p, mt_program_mul(p, both, s[2]), mt_program_mul(p, c[0], c[2])),
+        mt_program_mul(p, s[0], c[1])};
+    e[0] = mt_build_vec(b, MT_VEC_UNIT, x, what);
+    e[1] = mt_build_vec(b, MT_VEC_UNIT, y, what);
+    e[2] = mt_build_cross(b, MT_VEC_CROSS, e[0], e[1]);
+}
+
+static void build_axes(mt_builder *b, const mt_axes *axes, const char *of, const char *name,
+                       int e[3])
+{
+    for (int k = 0; k < 3; k++) {
+        e[k] = b->axis_vec[k];
+    }
+    if (!axes->given) {
+        return;
+    }
+    const char *const what = mt_build_name(b, "axes of %s \"%s\"", of, name);
+    if (axes->n_angles > 0) {
+        turned_axes(b, axes, what, e);
+        return;
+    }
+    e[0] = unit_vec(b, axes->x, what);
+    if (axes->has_y) {
+        e[2] = mt_build_cross(b, MT_VEC_ACROSS, e[0], unit_vec(b, axes->y, what));
+        e[1] = mt_build_cross(b, MT_VEC_CROSS, e[2], e[0]);
+    } else if (axes->has_z) {
+        e[1] = mt_build_cross(b, MT_VEC_ACROSS, unit_vec(b, axes->z, what), e[0]);
+        e[2] = mt_build_cross(b, MT_VEC_CROSS, e[0], e[1]);
+    } else {
+        e[1] = mt_build_cross(b, MT_VEC_CROSS, e[2], e[0]);
+    }
+}
+
 /* Lengths and bodies. */
 
 static mt_node build_length(mt_builder *b, const mt_node from[3], const mt_node to[3])
@@ -111,12 +171,14 @@ mt_status mt_build_bodies(mt_builder *b)
             continue;
         }
         static const int AXES[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+        int e[3];
+        build_axes(b, &body->axes, "body", body->name.s, e);
         def.kind = MT_INERTIA_ROTATION;
         for (int k = 0; k < (b->sys->dimension == 2 ? 1 : 6); k++) {
             const int *const axes = b->sys->dimension == 2 ? AXES[2] : AXES[k];
             def.coefficient = mt_build_num_or(b, body->inertia[k], b->zero);
-            def.dir[0] = b->axis_vec[axes[0]];
-            def.dir[1] = b->axis_vec[axes[1]];
+            def.dir[0] = e[axes[0]];
+            def.dir[1] = e[axes[1]];
             /* J_ab and J_ba; the tensor's off-diagonal entry as it stands in the matrix */
             if (axes[0] != axes[1]) {
                 def.coefficient = mt_program_mul(
@@ -384,13 +446,15 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
     return MT_OK;
 }
 
-/* Bushing between the two points, in global axes of the drawn position carried by bodies[0]:
- * displacement (3) and rotation vector (3). */
+/* Bushing between the two points, along its axes as drawn, carried by bodies[0]: displacement
+ * (3) and rotation vector (3). */
 static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
 {
     ends e = {.body = {0}};
     int measure[6];
+    int dir[3];
     MT_TRY(spring_ends(b, spring, &e));
+    build_axes(b, &spring->axes, spring->damper ? "damper" : "spring", spring->name.s, dir);
     for (int k = 0; k < 6; k++) {
         const bool turns = k >= 3;
         mt_measure_def def = mt_measure_def_default(
@@ -398,7 +462,7 @@ static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
         def.point[0] = e.arm[0];
         def.point[1] = e.arm[1];
         for (int i = 0; i < 3; i++) {
-            def.dir[i] = b->axis_vec[turns ? i : k];
+            def.dir[i] = dir[turns ? i : k];
         }
         def.component = k % 3;
         measure[k] = mt_build_measure(b, &def);
@@ -845,7 +909,7 @@ static void link_frame(mt_builder *b, const mt_link *link, link_geometry *g)
         mt_build_coordinates(b, link->hinge_axis, hinge);
         const int axis = mt_build_vec(
             b, MT_VEC_UNIT, hinge, mt_build_name(b, "hinge axis of link \"%s\"", link->name.s));
-        g->triad[1] = mt_build_cross(b, axis, g->triad[0]);
+        g->triad[1] = mt_build_cross(b, MT_VEC_CROSS, axis, g->triad[0]);
         g->triad[2] = axis; /* perpendicular to e1: checked when the system is settled */
         return;
     }

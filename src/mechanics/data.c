@@ -211,6 +211,7 @@ void mt_data_vec(mt_data *d, int i)
         }
         return;
     case MT_VEC_CROSS:
+    case MT_VEC_ACROSS:
         cx_cross3(d->vec[def->axis], d->vec[def->helper], v);
         cx_unit3(v);
         return;

@@ -998,6 +998,8 @@ static mt_status check_arm(const mt_system *sys, int arm, int body, const double
 
 /* Hinge axes drawn further than this (cosine) from a right angle to their link are refused. */
 static const double NOT_PERPENDICULAR = 1e-6;
+/* Sine of the angle between two vectors that make axes. */
+static const double PARALLEL = 1e-9;
 
 /* Walk through the vectors in order, choosing helper axes and refusing directions of length
  * zero. */
@@ -1019,6 +1021,13 @@ static mt_status choose_helpers(mt_system *sys, const double *v, mt_err *err)
             if (!(fabs(cosine) <= NOT_PERPENDICULAR)) {
                 return mt_fail(err, MT_E_INPUT,
                                "%s is not perpendicular to the link (cosine %g)", what, cosine);
+            }
+        }
+        if (def->kind == MT_VEC_ACROSS) {
+            mt_cx n[3];
+            cx_cross3(d.vec[def->axis], d.vec[def->helper], n);
+            if (!(hypot(hypot(creal(n[0]), creal(n[1])), creal(n[2])) > PARALLEL)) {
+                return mt_fail(err, MT_E_INPUT, "%s: two of their vectors are parallel", what);
             }
         }
         if (def->kind == MT_VEC_UNIT && !(length_of_vec(def, v) > 0.0)) {

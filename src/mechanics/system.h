@@ -23,13 +23,14 @@ typedef enum mt_vec_kind {
     MT_VEC_UNIT,  /* the same, normalised */
     MT_VEC_PERP1, /* unit, perpendicular to vector `axis`: axis x e_helper, normalised */
     MT_VEC_PERP2, /* axis x PERP1 */
-    MT_VEC_CROSS  /* vector axis x vector helper, normalised */
+    MT_VEC_CROSS, /* vector axis x vector helper, perpendicular, normalised */
+    MT_VEC_ACROSS /* the same of any two that are not parallel */
 } mt_vec_kind;
 
 typedef struct mt_vec_def {
     mt_vec_kind kind;
     mt_node node[3];
-    int axis;         /* PERP: a UNIT vector */
+    int axis;         /* PERP, CROSS, ACROSS: a UNIT vector */
     int helper;       /* PERP: global axis least along the axis at the original design */
     const char *what; /* for messages: "axis of joint \"pivot\"" */
 } mt_vec_def;

@@ -301,6 +301,72 @@ static void resolve_unknown(mt_resolve *f, mt_name name, const mt_names *table,
     }
 }
 
+/* Axes of an item's own. */
+
+static void axes_defaults(void *item, mt_addr addr, int which)
+{
+    mt_axes *const a = item;
+    (void)which;
+    a->given = addr != MT_NO_ADDR;
+    a->addr = addr;
+}
+
+/* Axes that could not be read are not checked. */
+static void axes_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_axes *const a = item;
+    (void)which;
+    a->given = a->given && !mt_object_wrong(r, o);
+}
+
+#define THIS mt_axes
+static const mt_key AXES[] = {
+    MT_I_VECTOR("x", x, has_x, AXIS, "Direction of the first axis, of any length."),
+    MT_I_VECTOR(
+        "y", y, has_y, AXIS,
+        "Three dimensions, with x: a direction in the plane of the first and the second "
+        "axis, on the second's side: what of it lies along x does not count."),
+    MT_I_VECTOR("z", z, has_z, AXIS,
+                "Three dimensions, instead of y: a direction in the plane of the first and the "
+                "third axis, on the third's side."),
+    MT_I_NUMS("angles_rad", NUMBER_OR_LIST, angles, n_angles, ANY, 1, 3,
+              "Instead of vectors: [a, b, c] turns the drawing's axes about its x by a, then "
+              "about its y by b, then about its z by c [rad] (the same as about z by c, then "
+              "about the new y by b, then about the new x by a: yaw, pitch, roll). In two "
+              "dimensions one angle, counter-clockwise.",
+              .examples = "[[\"-40*deg\", 0, 0]]"),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_axes_keys = {
+    MT_I_TABLE("axes", AXES, mt_axes), .defaults = axes_defaults, .finish = axes_finish,
+    .says =
+        "Axes of its own, right-handed and at right angles, in the reference position: two "
+        "vectors, x with y or z, or angles; in two dimensions x alone, or one angle. Absent: "
+        "the drawing's.",
+    .examples = "[{\"x\": [1, 0, 1], \"y\": [0, 1, 0]}]"};
+
+void mt_resolve_axes(mt_resolve *f, mt_name name, const char *what, const mt_axes *a)
+{
+    const bool two = f->m->dimension == 2;
+    const int vectors = (a->has_x ? 1 : 0) + (a->has_y ? 1 : 0) + (a->has_z ? 1 : 0);
+    if (!a->given) {
+        return;
+    }
+    if (a->n_angles > 0 ? vectors > 0 : !a->has_x || vectors != (two ? 1 : 2)) {
+        mt_diag_error(f->d, a->addr, "axes of %s \"%s\" need %s, or \"angles_rad\"", what,
+                      name.s,
+                      two ? "\"x\" alone: the model has two dimensions"
+                          : "two vectors: \"x\", and \"y\" or \"z\"");
+    } else if (a->n_angles > 0 && a->n_angles != (two ? 1 : 3)) {
+        mt_diag_error(
+            f->d, a->addr,
+            "axes of %s \"%s\": \"angles_rad\" must be %s: the model has %d dimensions", what,
+            name.s, two ? "one angle" : "three angles", f->m->dimension);
+    }
+}
+
 int mt_resolve_find(mt_resolve *f, mt_name name, const mt_names *table, const char *what)
 {
     if (name.s == NULL) {

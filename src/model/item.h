@@ -76,6 +76,8 @@ mt_model_reader *mt_model_reader_of(mt_reader *r);
         .name = "at", .type = MT_KEY_TEXT_OR_LIST, MT_M_ROW(POINT), .read = mt_item_at,   \
         .at = offsetof(THIS, at), .other = MT_M_PLACE(int, n_at), .schema = MT_I_OF("at") \
     }
+/* mt_axes axes */
+#define MT_I_AXES MT_M_PART("axes", false, axes, mt_axes, mt_axes_keys, NULL)
 /* Two names: mt_name[2], or structs that begin with it (mt_attach[2]) */
 #define MT_I_TWO(label, m, ...)                                                               \
     {                                                                                         \
@@ -119,6 +121,7 @@ extern const mt_key_table mt_parameter_keys;
 extern const mt_key_table mt_curve_keys;
 extern const mt_key_table mt_body_keys;
 extern const mt_key_table mt_link_keys;
+extern const mt_key_table mt_axes_keys;
 extern const mt_key_table mt_section_keys;
 extern const mt_key_table mt_shear_keys;
 extern const mt_key_table mt_joint_keys;
@@ -162,6 +165,8 @@ typedef struct mt_resolve {
  * "x"; did you mean "y"? An absent name gives MT_ABSENT without an error. */
 int mt_resolve_find(mt_resolve *f, mt_name name, const mt_names *table, const char *what);
 void mt_resolve_position(mt_resolve *f, mt_position *p);
+/* Check which members the axes of an item, `what` "spring", have. */
+void mt_resolve_axes(mt_resolve *f, mt_name name, const char *what, const mt_axes *a);
 /* Resolve an attachment. */
 void mt_resolve_attach(mt_resolve *f, mt_attach *a);
 /* True where both attach to the same part. */

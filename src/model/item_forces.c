@@ -168,22 +168,24 @@ static void spring_finish(mt_reader *r, const mt_object *o, int which, void *ite
 #define THIS mt_spring
 static const mt_key SPRING[] = {
     MT_I_NAME("spring"),
-    MT_M_CHOICE("type", true, type, mt_spring_type, "type", SPRING_NAMES,
-                "torsion: about a joint or between two bodies; axial: along the line between "
-                "two points; bar: an axial spring made of material, with mass; bushing: in all "
-                "directions, along axes of the drawing that the first body carries; its forces "
-                "act at the point of the second body."),
+    MT_M_CHOICE(
+        "type", true, type, mt_spring_type, "type", SPRING_NAMES,
+        "torsion: about a joint or between two bodies; axial: along the line between "
+        "two points; bar: an axial spring made of material, with mass; bushing: in all "
+        "directions, along axes (absent: the drawing's) that the first body carries; its "
+        "forces act at the point of the second body."),
     TWO_BODIES,
     MT_M_REF("joint", false, joint_name,
              "Torsion: the joint (or hinge of a link, \"L.h3\") whose angle it acts on. Axial: "
              "the joint that slides along whose axis it acts."),
     MT_I_AT,
+    MT_I_AXES,
     MT_M_JUST("stiffness_n_per_m", NUMBER_OR_LIST, false, ANY,
-              "Axial: stiffness [N/m]. Bushing: a list along x, y (and z). A negative one is "
+              "Axial: stiffness [N/m]. Bushing: a list along its axes. A negative one is "
               "allowed: a spring over its dead centre, a magnet.",
               .read = read_along, .least = 1, .most = 3),
     MT_M_JUST("stiffness_n_m_per_rad", NUMBER_OR_LIST, false, ANY,
-              "Torsion: stiffness [N m/rad]. Bushing: about z, or a list about x, y, z. A "
+              "Torsion: stiffness [N m/rad]. Bushing: about z, or a list about its axes. A "
               "negative one is allowed.",
               .read = read_about, .least = 1, .most = 3),
     MT_I_IN,
@@ -217,7 +219,8 @@ static const mt_key SPRING[] = {
         "Bushing, three dimensions: 6 rows of 6, symmetric (to six digits; anything else has "
         "no energy and is an error); x, y, z [N/m], rotations [N m/rad], in between [N/rad]; "
         "about the point at which the bushing acts, that of the second body (absent: its "
-        "centre), for displacements and rotations of the second body against the first.",
+        "centre), along its axes, for displacements and rotations of the second body against "
+        "the first.",
         .schema = "\"type\": \"array\", \"minItems\": 6, \"maxItems\": 6, \"items\": "
                   "{\"type\": \"array\", \"minItems\": 6, \"maxItems\": 6, \"items\": "
                   "{\"$ref\": \"#/definitions/number\"}}",
@@ -248,11 +251,12 @@ static const mt_key DAMPER[] = {
              "Torsion: the joint (or hinge of a link, \"L.h3\") whose rate it acts on. Axial: "
              "the joint that slides along whose axis it acts."),
     MT_I_AT,
+    MT_I_AXES,
     MT_M_JUST("damping_n_s_per_m", NUMBER_OR_LIST, false, ANY,
-              "Axial: coefficient [N s/m]. Bushing: a list along x, y (and z).",
-              .read = read_along, .least = 1, .most = 3),
+              "Axial: coefficient [N s/m]. Bushing: a list along its axes.", .read = read_along,
+              .least = 1, .most = 3),
     MT_M_JUST("damping_n_m_s_per_rad", NUMBER_OR_LIST, false, ANY,
-              "Torsion: coefficient [N m s/rad]. Bushing: about z, or a list about x, y, z.",
+              "Torsion: coefficient [N m s/rad]. Bushing: about z, or a list about its axes.",
               .read = read_about, .least = 1, .most = 3),
     MT_I_IN,
     MT_M_DESCRIPTION,
@@ -434,6 +438,7 @@ typedef struct rule {
     need preload;
     need lists; /* per direction, N/m and N m/rad */
     need matrix;
+    need axes;
 } rule;
 
 static const rule RULES[] = {
@@ -447,7 +452,8 @@ static const rule RULES[] = {
                          .preload = MAY},
     [MT_SPRING_BAR] =
         {.bodies = NEEDS, .at = MAY, .material = NEEDS, .density = MAY, .preload = MAY},
-    [MT_SPRING_BUSHING] = {.bodies = NEEDS, .at = MAY, .lists = NEEDS, .matrix = MAY},
+    [MT_SPRING_BUSHING] =
+        {.bodies = NEEDS, .at = MAY, .lists = NEEDS, .matrix = MAY, .axes = MAY},
 };
 
 static void check_members(mt_resolve *f, const mt_spring *s)
@@ -473,6 +479,7 @@ static void check_members(mt_resolve *f, const mt_spring *s)
         {s->free_angle != MT_ABSENT, r->free_angle, "free_angle_rad"},
         {s->preload != MT_ABSENT, r->preload, torsion ? "preload_n_m" : "preload_n"},
         {s->matrix != NULL, r->matrix, "stiffness_matrix"},
+        {s->axes.given, r->axes, "axes"},
         {s->translation[0] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY, force},
         {s->rotation[2] != MT_ABSENT, s->matrix == NULL ? r->lists : MAY, torque},
     };
@@ -535,6 +542,7 @@ static void resolve_springs(mt_resolve *f)
             continue; /* could not be read */
         }
         check_members(f, s);
+        mt_resolve_axes(f, s->name, s->damper ? "damper" : "spring", &s->axes);
         check_together(f, s);
         check_bodies(f, s);
         if (s->type == MT_SPRING_TORSION) {

@@ -221,6 +221,23 @@ static void lint_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
     }
 }
 
+/* Check that an item's own axes have directions. */
+static void lint_own_axes(mt_lint *j, const mt_item *item, const mt_axes *a, mt_addr name)
+{
+    double e[AXES][AXES];
+    const mt_axes_fault fault = mt_axes_of(a, j->value, e);
+    const char *const other = a->has_y ? "axes/y" : "axes/z";
+    if (fault == MT_AXES_NO_X) {
+        fault_axis(j, item, a->x, name, "axes/x", "has length 0 and no direction");
+    } else if (fault == MT_AXES_NO_OTHER) {
+        fault_axis(j, item, a->has_y ? a->y : a->z, name, other,
+                   "has length 0 and no direction");
+    } else if (fault == MT_AXES_PARALLEL) {
+        fault_axis(j, item, a->has_y ? a->y : a->z, name, other,
+                   "is parallel to x: two vectors along the same line do not make axes");
+    }
+}
+
 /* Check that a link's hinge axis has a direction and is perpendicular to the link. */
 static void lint_hinge_axis(mt_lint *j, int i, const mt_link *l)
 {
@@ -276,6 +293,13 @@ void mt_lint_structure(mt_lint *j)
 {
     const mt_model *const m = j->model;
     int dampers = 0;
+    for (int i = 0; i < m->n_bodies; i++) {
+        const mt_body *const b = &m->bodies[i];
+        const mt_item item = {"body", "bodies", i, b->name.s};
+        if (mt_model_present(&b->in, j->configuration)) {
+            lint_own_axes(j, &item, &b->axes, b->name.addr);
+        }
+    }
     for (int i = 0; i < m->n_links; i++) {
         if (mt_model_present(&m->links[i].in, j->configuration)) {
             lint_ends(j, i, &m->links[i]);
@@ -292,6 +316,7 @@ void mt_lint_structure(mt_lint *j)
         if (!mt_model_present(&s->in, j->configuration)) {
             continue;
         }
+        lint_own_axes(j, &item, &s->axes, s->name.addr);
         lint_matrix(j, &item, s);
         if (line && needs_drawn_length(j, s)) {
             lint_line(j, &item, s->bodies, s->n_at, s->at, s->name.addr);

@@ -5,6 +5,7 @@
 
 #include "modetune/model.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -362,4 +363,95 @@ const char *mt_model_configuration_name(const mt_model *model, int configuration
     return model != NULL && configuration >= 0 && configuration < model->n_configurations
                ? model->configurations[configuration].name.s
                : NULL;
+}
+
+/* Axes of an item's own. */
+enum { SPACE = 3 };
+/* Sine of the angle between two vectors; below it they are parallel. */
+static const double PARALLEL = 1e-9;
+
+static double value_of(mt_num num, const double *value)
+{
+    return num == MT_ABSENT ? 0.0 : value[num];
+}
+
+/* e := the vector, of unit length; false where it has none. */
+static bool axis_of(const mt_vector x, const double *value, double e[SPACE])
+{
+    double largest = 0.0;
+    for (int k = 0; k < SPACE; k++) {
+        e[k] = value_of(x[k], value);
+        largest = fmax(largest, fabs(e[k]));
+    }
+    for (int k = 0; k < SPACE && largest > 0.0; k++) {
+        e[k] /= largest;
+    }
+    const double length = hypot(hypot(e[0], e[1]), e[2]);
+    for (int k = 0; k < SPACE && length > 0.0; k++) {
+        e[k] /= length;
+    }
+    return length > 0.0;
+}
+
+/* out := a x b, of unit length; false where they are parallel. */
+static bool across(const double a[SPACE], const double b[SPACE], double out[SPACE])
+{
+    for (int k = 0; k < SPACE; k++) {
+        const int i = (k + 1) % SPACE;
+        const int j = (k + 2) % SPACE;
+        out[k] = (a[i] * b[j]) - (a[j] * b[i]);
+    }
+    const double sine = hypot(hypot(out[0], out[1]), out[2]);
+    for (int k = 0; k < SPACE && sine > PARALLEL; k++) {
+        out[k] /= sine;
+    }
+    return sine > PARALLEL;
+}
+
+static void turn_axes(const mt_axes *a, const double *value, double e[SPACE][SPACE])
+{
+    const bool one = a->n_angles == 1;
+    const double about_x = one ? 0.0 : value_of(a->angles[0], value);
+    const double about_y = one ? 0.0 : value_of(a->angles[1], value);
+    const double about_z = value_of(a->angles[one ? 0 : 2], value);
+    const double s[] = {sin(about_x), sin(about_y), sin(about_z)};
+    const double c[] = {cos(about_x), cos(about_y), cos(about_z)};
+    e[0][0] = c[1] * c[2];
+    e[0][1] = c[1] * s[2];
+    e[0][2] = -s[1];
+    e[1][0] = (s[0] * s[1] * c[2]) - (c[0] * s[2]);
+    e[1][1] = (s[0] * s[1] * s[2]) + (c[0] * c[2]);
+    e[1][2] = s[0] * c[1];
+    (void)across(e[0], e[1], e[2]);
+}
+
+mt_axes_fault mt_axes_of(const mt_axes *a, const double *value, double e[SPACE][SPACE])
+{
+    static const double drawn[SPACE][SPACE] = {
+        {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    double other[SPACE];
+    for (int i = 0; i < SPACE; i++) {
+        for (int k = 0; k < SPACE; k++) {
+            e[i][k] = drawn[i][k];
+        }
+    }
+    if (a->given && a->n_angles > 0) {
+        turn_axes(a, value, e);
+        return MT_AXES_SOUND;
+    }
+    if (!a->given || !a->has_x) {
+        return MT_AXES_SOUND;
+    }
+    if (!axis_of(a->x, value, e[0])) {
+        return MT_AXES_NO_X;
+    }
+    if (!a->has_y && !a->has_z) { /* in the plane */
+        return across(e[2], e[0], e[1]) ? MT_AXES_SOUND : MT_AXES_PARALLEL;
+    }
+    if (!axis_of(a->has_y ? a->y : a->z, value, other)) {
+        return MT_AXES_NO_OTHER;
+    }
+    const bool apart = a->has_y ? across(e[0], other, e[2]) && across(e[2], e[0], e[1])
+                                : across(other, e[0], e[1]) && across(e[0], e[1], e[2]);
+    return apart ? MT_AXES_SOUND : MT_AXES_PARALLEL;
 }

@@ -67,6 +67,27 @@ typedef struct mt_position {
     mt_addr addr;
 } mt_position;
 
+/*
+ * Axes of an item's own, in the reference position: the drawing's where they are not given.
+ * Two vectors, of any length: x, and y or z, of which only the part across x counts; in two
+ * dimensions x alone. Or angles a, b, c: the drawing's axes turned about x by a, then about the
+ * drawing's y by b, then about its z by c (about z, the new y and the new x: c, b, a),
+ *     [x y z] = Rz(c) Ry(b) Rx(a);
+ * in two dimensions one angle.
+ */
+typedef struct mt_axes {
+    bool given;
+    bool has_x;
+    mt_vector x;
+    bool has_y;
+    mt_vector y;
+    bool has_z;
+    mt_vector z;
+    int n_angles;
+    mt_num *angles; /* rad */
+    mt_addr addr;
+} mt_axes;
+
 typedef struct mt_point {
     mt_name name;
     mt_vector x;
@@ -97,9 +118,10 @@ typedef struct mt_body {
     mt_name name;
     mt_num mass; /* kg; absent: 0 */
     bool point_mass;
-    /* about the centre of mass, global axes in the reference position [kg m^2]. 2-D: [0]. 3-D:
+    /* about the centre of mass, along `axes` in the reference position [kg m^2]. 2-D: [0]. 3-D:
      * xx yy zz xy xz yz (absent: 0) */
     mt_num inertia[6];
+    mt_axes axes;
     mt_position centre;
     mt_presence in;
     mt_origin origin; /* of its numbers: for people */
@@ -246,11 +268,11 @@ typedef struct mt_spring {
     mt_num youngs_modulus; /* bar */
     mt_num area;
     mt_num density;
-    mt_num loss_factor; /* not for dampers; absent: 0 */
-    /* bushing N/m in global axes of the reference position, attached to bodies[0] */
-    mt_vector translation;
-    mt_vector rotation; /* bushing N m/rad */
-    mt_num *matrix;     /* bushing 6 x 6, row-major, lower triangle used, symmetric; NULL */
+    mt_num loss_factor;    /* not for dampers; absent: 0 */
+    mt_axes axes;          /* bushing: of the reference position, attached to bodies[0] */
+    mt_vector translation; /* bushing N/m */
+    mt_vector rotation;    /* bushing N m/rad */
+    mt_num *matrix;        /* bushing 6 x 6, row-major, lower triangle used, symmetric; NULL */
     mt_presence in;
 } mt_spring;
 
@@ -413,6 +435,16 @@ typedef struct mt_model {
     mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
 } mt_model;
+
+/* What hinders axes: nothing; x has no length; y or z has none; they are parallel. */
+typedef enum mt_axes_fault {
+    MT_AXES_SOUND,
+    MT_AXES_NO_X,
+    MT_AXES_NO_OTHER,
+    MT_AXES_PARALLEL
+} mt_axes_fault;
+/* e[i]: unit vector of axis i, by the values of the model's numbers. */
+mt_axes_fault mt_axes_of(const mt_axes *axes, const double *value, double e[3][3]);
 
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */
 mt_status mt_model_new(mt_model **out, mt_err *err);

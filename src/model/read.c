@@ -134,7 +134,15 @@ static void resolve_names(mt_resolve *f)
 static void resolve_bodies(mt_resolve *f)
 {
     for (int i = 0; i < f->m->n_bodies; i++) {
+        const mt_body *const b = &f->m->bodies[i];
         mt_resolve_position(f, &f->m->bodies[i].centre);
+        if (b->axes.given && (b->point_mass || f->m->dimension == 2)) {
+            mt_diag_error(f->d, b->axes.addr, "body \"%s\" has no \"axes\": %s", b->name.s,
+                          b->point_mass ? "without inertia_kg_m2 it is a point mass"
+                                        : "in two dimensions it turns about z alone");
+        } else if (f->m->dimension != 0) {
+            mt_resolve_axes(f, b->name, "body", &b->axes);
+        }
     }
 }
 
@@ -231,12 +239,14 @@ static const mt_key BODY[] = {
     MT_I_NUM("mass_kg", false, mass, NOT_NEGATIVE, "Mass [kg]. Absent: 0."),
     MT_M_JUST(
         "inertia_kg_m2", NUMBER_OR_LIST, false, INERTIA,
-        "About the centre of mass, global axes [kg m^2]. Two dimensions: a number. Three: [xx, "
+        "About the centre of mass, along `axes` [kg m^2]. Two dimensions: a number. Three: "
+        "[xx, "
         "yy, zz] or [xx, yy, zz, xy, xz, yz], elements of the tensor: xy is minus the integral "
         "of x y over the mass, so that products of inertia that a CAD system gives as positive "
         "integrals change sign. None of the principal moments is more than the other two "
         "together. Absent: a point mass, which has no orientation.",
         .read = read_inertia, .least = 3, .most = 6),
+    MT_I_AXES,
     MT_I_POSITION("centre", true, centre, "Centre of mass [m]."),
     MT_I_IN,
     MT_M_DESCRIPTION,
@@ -469,12 +479,13 @@ const mt_schema_type *mt_model_types(int *n)
 const mt_key_table *const *mt_model_key_tables(int *n)
 {
     static const mt_key_table *const tables[] = {
-        &mt_model_keys,         &mt_curve_keys,  &mt_parameter_keys,
-        &mt_body_keys,          &mt_link_keys,   &mt_section_keys,
-        &mt_shear_keys,         &mt_joint_keys,  &mt_spring_keys,
-        &mt_damper_keys,        &mt_sensor_keys, &mt_mode_keys,
-        &mt_configuration_keys, &mt_drive_keys,  &mt_hold_keys,
-        &mt_load_keys,          &units_keys,     &mt_damping_keys,
+        &mt_model_keys,   &mt_curve_keys,         &mt_parameter_keys,
+        &mt_body_keys,    &mt_axes_keys,          &mt_link_keys,
+        &mt_section_keys, &mt_shear_keys,         &mt_joint_keys,
+        &mt_spring_keys,  &mt_damper_keys,        &mt_sensor_keys,
+        &mt_mode_keys,    &mt_configuration_keys, &mt_drive_keys,
+        &mt_hold_keys,    &mt_load_keys,          &units_keys,
+        &mt_damping_keys,
     };
     *n = MT_COUNT(tables);
     return tables;

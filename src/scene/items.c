@@ -180,6 +180,21 @@ static mt_status solid(double mass, double j[9], mt_arena *work, mt_scene_ellips
     return MT_OK;
 }
 
+/* j := the tensor (xx yy zz xy xz yz along the body's axes) along the drawing's. */
+static void drawn_tensor(const mt_scene_frame *f, const mt_axes *axes, const double v[6],
+                         double j[9])
+{
+    const double own[3][3] = {{v[0], v[3], v[4]}, {v[3], v[1], v[5]}, {v[4], v[5], v[2]}};
+    double e[3][3];
+    (void)mt_axes_of(axes, f->number, e);
+    for (int k = 0; k < 9; k++) {
+        j[k] = 0.0;
+        for (int i = 0; i < 9; i++) {
+            j[k] += e[i / 3][k % 3] * own[i / 3][i % 3] * e[i % 3][k / 3];
+        }
+    }
+}
+
 static mt_status ellipsoid(const mt_scene_frame *f, const mt_body *b, mt_scene_body *out,
                            mt_err *err)
 {
@@ -197,8 +212,8 @@ static mt_status ellipsoid(const mt_scene_frame *f, const mt_body *b, mt_scene_b
     if (plane) {
         disc(out->mass, inertia[0], &e);
     } else {
-        double j[9] = {inertia[0], inertia[3], inertia[4], inertia[3], inertia[1],
-                       inertia[5], inertia[4], inertia[5], inertia[2]};
+        double j[9];
+        drawn_tensor(f, &b->axes, inertia, j);
         MT_TRY(solid(out->mass, j, f->work, &e, err));
     }
     bool finite = isfinite(out->mass) != 0;

@@ -82,8 +82,9 @@ static void find_inputs(tree_slope *w)
             mt_program_include_inputs(program, def->node[k], set);
         }
         for (ptrdiff_t k = 0; k < words && !nodes; k++) {
+            const bool both = def->kind == MT_VEC_CROSS || def->kind == MT_VEC_ACROSS;
             set[k] = w->vec_inputs[(words * def->axis) + k] |
-                     (def->kind == MT_VEC_CROSS ? w->vec_inputs[(words * def->helper) + k] : 0);
+                     (both ? w->vec_inputs[(words * def->helper) + k] : 0);
         }
     }
 }

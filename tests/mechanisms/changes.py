@@ -193,7 +193,9 @@ def place(rng, model):
     if any(isinstance(x, str) for item in items(model) for m in ("at", "centre", "from", "to", "gravity_m_per_s2", "axis", "axis_b", "inertia_kg_m2", "force_n")
            for x in flat(item.get(m, [])) if dim == 3 or m != "inertia_kg_m2"):
         return None
-    uneven = any(s["type"] == "bushing" and s["stiffness_n_per_m"][0] != s["stiffness_n_per_m"][1] for s in model.get("springs", []) if dim == 2)
+    if any("angles_rad" in a or any(isinstance(x, str) for x in flat(list(a.values()))) for a in (item.get("axes", {}) for item in items(model))):
+        return None
+    uneven = any(s["type"] == "bushing" and "axes" not in s and s["stiffness_n_per_m"][0] != s["stiffness_n_per_m"][1] for s in model.get("springs", []) if dim == 2)
     q = _rotation(rng, dim, uneven)
     shift = [Decimal(rng.randint(-32, 32)) / 16 for _ in range(dim)]
     model = copy.deepcopy(model)
@@ -207,6 +209,9 @@ def place(rng, model):
         for member in ("axis", "axis_b", "hinge_axis", "gravity_m_per_s2", "force_n"):
             if isinstance(item.get(member), list):
                 item[member] = turn(item[member])
+        if "axes" in item:
+            item["axes"] = {member: turn(v) for member, v in item["axes"].items()}
+            continue
         if dim == 3 and "inertia_kg_m2" in item:
             item["inertia_kg_m2"] = _inertia(q, item["inertia_kg_m2"])
         if dim == 3 and item.get("type") == "bushing":

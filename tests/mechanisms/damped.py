@@ -32,7 +32,7 @@ def _damper(spring, factor):
     """Beside the spring, with so many times its stiffness."""
     if spring["type"] == "bar" or "stiffness_matrix" in spring:
         return None
-    out = {k: copy.deepcopy(v) for k, v in spring.items() if k in ("type", "bodies", "joint", "at", "in")}
+    out = {k: copy.deepcopy(v) for k, v in spring.items() if k in ("type", "bodies", "joint", "at", "axes", "in")}
     out["name"] = f"d_{spring['name']}"
     for member, own in (("stiffness_n_per_m", "damping_n_s_per_m"), ("stiffness_n_m_per_rad", "damping_n_m_s_per_rad")):
         if member in spring:

@@ -49,6 +49,11 @@ def rest_forgotten(model):
     return spring is not None
 
 
+def axes_lost(model):
+    item = next((s for s in model.get("springs", []) + model["bodies"] if "axes" in s), None)
+    return item is not None and item.pop("axes") is not None
+
+
 def damper_lost(model):
     return bool(model["dampers"]) and model["dampers"].pop() is not None
 
@@ -83,4 +88,4 @@ RINGING_FAULTS = [rings_higher, rings_longer]  # put into motions that are read;
 DAMPING_FAULTS = [(damper_lost, 8), (loss_off, 6), (proportion_lost, 8)]  # put into damped mechanisms: as below
 FAULTS = [(no_gravity, ("loaded2", "loaded3", "hanging"), 6), (heavier, ("free2", "free3", "loaded2"), 4), (tension_reversed, ("loaded2", "loaded3"), 7),
           (spring_lost, ("loaded2", "loaded3"), 8), (joint_lost, ("loaded2", "loaded3"), 8), (joint_moved, ("loaded2", "driven3"), 5),
-          (rest_forgotten, ("loaded2", "loaded3"), 7)]
+          (rest_forgotten, ("loaded2", "loaded3"), 7), (axes_lost, ("axes2", "axes3"), 7)]

@@ -468,6 +468,38 @@ def chains(rng):
     return m.done()
 
 
+def _own_axes(m):
+    """Vectors that are not of unit length nor at right angles, or angles; some of the numbers are parameters."""
+    if m.chance(0.5):
+        angles = [m.parameter("a", m.rng.randint(-30, 30) / 10, "rad") for _ in range(3 if m.dim == 3 else 1)]
+        return {"angles_rad": angles if m.dim == 3 or m.chance(0.5) else angles[0]}
+    if m.dim == 2:
+        return {"x": m.axis()}
+    while True:
+        x, other = ([m.rng.randint(-3, 3) for _ in range(3)] for _ in range(2))
+        if any(x[i] * other[(i + 1) % 3] - x[(i + 1) % 3] * other[i] for i in range(3)):
+            break
+    k = m.rng.randrange(3)
+    x[k] = m.parameter("t", x[k], "1")
+    return {"x": x, m.rng.choice("yz"): other}
+
+
+def _axes(rng, dim):
+    """Bushings and bodies with axes of their own, at rest or loaded."""
+    m = Maker(rng, dim, name="Axes of their own")
+    m.tree(rng.randint(1, 3), tied=0.6, masses=0.1)
+    m.spring("ground", m.body(m.point()), "bushing")
+    m.springs(rng.randint(0, 2))
+    if m.chance(0.5):
+        m.gravity()
+        m.preloads(0.3)
+        m.stand()
+    for item in m.model["springs"] + (m.model["bodies"] if dim == 3 else []):
+        if item.get("type") == "bushing" or (m.chance(0.5) and "inertia_kg_m2" in item):
+            item["axes"] = _own_axes(m)
+    return m.done()
+
+
 def _of(maker, dim):
     return lambda rng: maker(rng, dim)
 
@@ -491,6 +523,8 @@ KINDS = {}
 for _name, _maker in (("free", _unloaded), ("redundant", _redundant), ("loaded", _loaded), ("decades", _decades), ("stiff", _stiff), ("blocked", _blocked), ("driven", _driven)):
     KINDS[f"{_name}2"] = _of(_maker, 2)
     KINDS[f"{_name}3"] = _of(_maker, 3)
+KINDS["axes2"] = _of(_axes, 2)
+KINDS["axes3"] = _of(_axes, 3)
 KINDS["rods2"] = _of(_rods, 2)
 KINDS["rods3"] = _of(_rods, 3)
 KINDS["hanging"] = hanging

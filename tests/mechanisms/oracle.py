@@ -262,7 +262,9 @@ class Oracle:
             if inertia is not None and self.dim == 3:
                 given = [self.n(x) for x in inertia] + [Decimal(0)] * (6 - len(inertia))
                 xx, yy, zz, xy, xz, yz = given
-                inertia = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+                own, e = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], self._axes(item)
+                n = range(3)
+                inertia = [[sum(own[i][j] * e[i][r] * e[j][c] for i in n for j in n) for c in n] for r in n]
             elif inertia is not None:
                 inertia = self.n(inertia)
             self._body(item["name"], self.v(item["centre"]), self.n(item.get("mass_kg", 0)), inertia)
@@ -518,10 +520,32 @@ class Oracle:
             self._weight(b, p, mass / 2)
         self._add_mass([plus(a, b) for a, b in zip(*ends)], mass / 6)
 
+    def _axes(self, item):
+        """Unit vectors of the item's own axes, by Gram and Schmidt, or by turns about x, y and z one after the other."""
+        drawn = [[Decimal(int(i == j)) for j in range(self.dim)] for i in range(self.dim)]
+        if "axes" not in item:
+            return drawn
+        own = item["axes"]
+        if "angles_rad" in own:
+            given = own["angles_rad"] if isinstance(own["angles_rad"], list) else [own["angles_rad"]]
+            for k, angle in enumerate(given):
+                s, c = exact.sine_cosine(self.n(angle))
+                i, j = ((k + 1) % 3, (k + 2) % 3) if self.dim == 3 else (0, 1)
+                for e in drawn:
+                    e[i], e[j] = c * e[i] - s * e[j], s * e[i] + c * e[j]
+            return drawn
+        x = unit(self.v(own["x"]))
+        if self.dim == 2:
+            return [x, [-x[1], x[0]]]
+        other = self.v(own.get("y") or own.get("z"))
+        along = sum(a * b for a, b in zip(x, other))
+        other = unit([b - along * a for a, b in zip(x, other)])
+        return [x, other, cross(x, other)] if "y" in own else [x, cross(other, x), other]
+
     def _bushing(self, item):
         bodies, at = self._ends(item)
         apart = self._apart(bodies, at)
-        axes = [[Decimal(int(i == j)) for j in range(self.dim)] for i in range(self.dim)]
+        axes = self._axes(item)
         measures = [plain(product(self.direction(bodies[0], u), apart)) for u in axes]
         if "stiffness_n_m_per_rad" in item or "stiffness_matrix" in item:
             measures += self._turns(bodies, axes)
