@@ -241,6 +241,28 @@ static void write_bushing(writer *w, const mt_spring *s)
         s->n_at > 0 ? "the point" : "the centre", of.second);
 }
 
+/* What a joint yields: where its axes point. */
+static void write_compliances(writer *w)
+{
+    for (int i = 0; i < w->m->n_joints; i++) {
+        const mt_joint *const j = &w->m->joints[i];
+        if (!mt_model_present(&j->in, w->configuration) || j->compliance == NULL) {
+            continue;
+        }
+        const pair of = pair_of(w, i, NULL);
+        const subject at = {"joints", i, "compliance", nan(""), of};
+        const bool plane = w->m->dimension == 2;
+        const char *const axes = !j->has_axis ? axes_text(w, &j->compliance->axes)
+                                 : plane      ? "across its axis and along it"
+                                              : "across its axis (twice) and along it";
+        add_convention(
+            w, &at,
+            "joint \"%s\": yields %s, carried by \"%s\", on a carrier \"%s.bearing\" "
+            "without mass",
+            j->name.s, axes, of.first, j->name.s);
+    }
+}
+
 static void write_inertia_axes(writer *w)
 {
     for (int i = 0; i < w->m->n_bodies; i++) {
@@ -383,6 +405,7 @@ static void cli_find_conventions(const mt_model *model, int configuration, const
 {
     writer w = {.m = model, .configuration = configuration, .value = value, .out = out};
     write_drive(&w);
+    write_compliances(&w);
     write_inertia_axes(&w);
     write_products(&w);
     write_sections(&w);

@@ -303,6 +303,13 @@ static mt_node build_loss(mt_builder *b, mt_num loss_factor)
     return loss == b->zero ? MT_NO_NODE : loss;
 }
 
+/* The loss factor along (k < 3) or about an axis. */
+static mt_num loss_along(const mt_builder *b, const mt_loss *loss, int k)
+{
+    const bool two = b->sys->dimension == 2;
+    return loss->n == 0 ? loss->all : loss->each[two && k >= 3 ? 2 : k];
+}
+
 static mt_spring_def spring_default(mt_builder *b, const mt_spring *spring, int measure,
                                     mt_node stiffness)
 {
@@ -311,7 +318,7 @@ static mt_spring_def spring_default(mt_builder *b, const mt_spring *spring, int 
                                .stiffness = stiffness,
                                .free = MT_NO_NODE,
                                .preload = MT_NO_NODE,
-                               .loss = build_loss(b, spring->loss_factor),
+                               .loss = build_loss(b, spring->loss.all),
                                .damper = spring->damper,
                                .item = b->sys->n_items - 1};
     return def;
@@ -446,6 +453,23 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
     return MT_OK;
 }
 
+/* Measure of a bushing: displacement along (k < 3) or rotation vector about an axis of dir,
+ * which the first body carries. */
+static int bushing_measure(mt_builder *b, const int body[2], const int arm[2], const int dir[3],
+                           int k)
+{
+    const bool turns = k >= 3;
+    mt_measure_def def = mt_measure_def_default(turns ? MT_MEASURE_ROTATION : MT_MEASURE_PLANE,
+                                                body[0], body[1]);
+    def.point[0] = arm[0];
+    def.point[1] = arm[1];
+    for (int i = 0; i < 3; i++) {
+        def.dir[i] = dir[turns ? i : k];
+    }
+    def.component = k % 3;
+    return mt_build_measure(b, &def);
+}
+
 /* Bushing between the two points, along its axes as drawn, carried by bodies[0]: displacement
  * (3) and rotation vector (3). */
 static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
@@ -457,20 +481,13 @@ static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
     build_axes(b, &spring->axes, spring->damper ? "damper" : "spring", spring->name.s, dir);
     for (int k = 0; k < 6; k++) {
         const bool turns = k >= 3;
-        mt_measure_def def = mt_measure_def_default(
-            turns ? MT_MEASURE_ROTATION : MT_MEASURE_PLANE, e.body[0], e.body[1]);
-        def.point[0] = e.arm[0];
-        def.point[1] = e.arm[1];
-        for (int i = 0; i < 3; i++) {
-            def.dir[i] = dir[turns ? i : k];
-        }
-        def.component = k % 3;
-        measure[k] = mt_build_measure(b, &def);
+        measure[k] = bushing_measure(b, e.body, e.arm, dir, k);
         const mt_num *const diagonals = turns ? spring->rotation : spring->translation;
         const mt_num diagonal = diagonals[k % 3];
         if (spring->matrix == NULL && diagonal != MT_ABSENT) {
-            const mt_spring_def one =
+            mt_spring_def one =
                 spring_default(b, spring, measure[k], mt_build_num(b, diagonal));
+            one.loss = build_loss(b, loss_along(b, &spring->loss, k));
             append_spring_def(b, &one);
         }
     }
@@ -488,35 +505,6 @@ static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
             one.measure[1] = measure[j];
             append_spring_def(b, &one);
         }
-    }
-    return MT_OK;
-}
-
-mt_status mt_build_springs(mt_builder *b)
-{
-    for (int i = 0; i < b->model->n_springs; i++) {
-        const mt_spring *const spring = &b->model->springs[i];
-        mt_status rc = MT_OK;
-        if (!mt_model_present(&spring->in, b->sys->configuration)) {
-            continue;
-        }
-        switch (spring->type) {
-        case MT_SPRING_TORSION:
-            rc = build_torsion(b, spring);
-            break;
-        case MT_SPRING_AXIAL:
-            rc = build_axial(b, spring);
-            break;
-        case MT_SPRING_BAR:
-            rc = build_bar(b, spring);
-            break;
-        case MT_SPRING_BUSHING:
-            rc = build_bushing(b, spring);
-            break;
-        case MT_SPRING_TYPE_COUNT:
-            break;
-        }
-        MT_TRY(rc);
     }
     return MT_OK;
 }
@@ -737,12 +725,141 @@ static void joint_arms(mt_builder *b, const mt_joint *joint, const int body[2], 
     }
 }
 
+/* The joint's axis; z where it has none. */
+static int joint_axis(mt_builder *b, const mt_joint *joint)
+{
+    return joint->has_axis ? unit_vec(b, joint->axis,
+                                      mt_build_name(b, "axis of joint \"%s\"", joint->name.s))
+                           : b->axis_vec[2];
+}
+
+/*
+ * A joint that yields: bodies[0] - springs, and equations where it is rigid - carrier - joint -
+ * bodies[1]. The carrier has neither mass nor freedom but what the springs leave it; the joint's
+ * equations carry the bearing's force.
+ */
+static void yielding_axes(mt_builder *b, const mt_joint *joint, int axis, int dir[3])
+{
+    const mt_axes *const own = &joint->compliance->axes;
+    const int last = b->sys->dimension - 1;
+    if (!joint->has_axis) {
+        build_axes(b, own, "joint", joint->name.s, dir);
+        return;
+    }
+    dir[2] = b->axis_vec[2];
+    dir[last] = axis;
+    if (own->given) {
+        const char *const what = mt_build_name(b, "axes of joint \"%s\"", joint->name.s);
+        dir[1] = mt_build_cross(b, MT_VEC_ACROSS, axis, unit_vec(b, own->x, what));
+        dir[0] = mt_build_cross(b, MT_VEC_CROSS, dir[1], axis);
+        return;
+    }
+    dir[0] = mt_build_perp(b, axis, 1);
+    if (last == 2) {
+        dir[1] = mt_build_perp(b, axis, 2);
+    }
+}
+
+/* Stiffness along (k < 3) or about an axis; MT_ABSENT: rigid. */
+static mt_num yield_of(const mt_compliance *c, int k)
+{
+    return k < 3 ? c->translation[k] : c->rotation[k - 3];
+}
+
+/* The carrier, at the joint's point of bodies[0] or its centre. */
+static int build_carrier(mt_builder *b, const mt_joint *joint, int first)
+{
+    mt_node at[3] = {b->zero, b->zero, b->zero};
+    if (joint->n_at > 0) {
+        mt_build_position(b, &joint->at[0], at);
+    } else if (first != MT_GROUND && !mt_arena_failed(&b->sys->mem)) {
+        const mt_vec_def *const centre = &b->sys->vecs[b->sys->bodies[first].centre];
+        for (int k = 0; k < 3; k++) {
+            at[k] = centre->node[k];
+        }
+    }
+    return build_body(b, mt_build_name(b, "%s.bearing", joint->name.s), at, false);
+}
+
+/* What of the carrier is rigid, as equations of a joint of their own; `of` is the joint on it. */
+static void build_seat(mt_builder *b, const mt_joint *joint, int of, const int first[2],
+                       const int dir[3])
+{
+    mt_system *const sys = b->sys;
+    mt_system_joint *const joints =
+        mt_arena_grow(&sys->mem, sys->joints, sys->n_joints, &sys->cap_joints, sizeof *joints);
+    if (joints == NULL) {
+        return;
+    }
+    const int carrier = sys->joints[of].body[0];
+    sys->joints = joints;
+    mt_system_joint seat = {.name = sys->bodies[carrier].name,
+                            .type = MT_JOINT_ORIENTATION,
+                            .first = sys->n_constraints,
+                            .coordinate = -1,
+                            .body = {first[0], carrier},
+                            .model_joint = sys->joints[of].model_joint,
+                            .link = MT_ABSENT,
+                            .hinge = -1};
+    sys->n_joints++;
+    for (int k = 0; k < 6; k++) {
+        if (sys->bodies[carrier].dof[k] >= 0 && yield_of(joint->compliance, k) == MT_ABSENT) {
+            mt_build_constraint(
+                b, bushing_measure(b, seat.body, (const int[2]){first[1], -1}, dir, k),
+                MT_NO_NODE, false);
+        }
+    }
+    seat.count = sys->n_constraints - seat.first;
+    sys->joints[sys->n_joints - 1] = seat;
+    sys->n_joints -= seat.count == 0 ? 1 : 0;
+}
+
+/* Springs and dampers of the carrier. */
+static void build_bearing(mt_builder *b, const mt_joint *joint)
+{
+    mt_system *const sys = b->sys;
+    const mt_compliance *const c = joint->compliance;
+    const int of = b->joint_at[joint - b->model->joints];
+    int body[2];
+    int arm[2];
+    int dir[3];
+    if (of < 0 || mt_arena_failed(&sys->mem) ||
+        !mt_build_attach(b, &joint->bodies[0], &body[0])) {
+        return;
+    }
+    body[1] = sys->joints[of].body[0];
+    joint_arms(b, joint, body, arm);
+    yielding_axes(b, joint, joint_axis(b, joint), dir);
+    for (int k = 0; k < 6; k++) {
+        const mt_num damping = k < 3 ? c->damping_translation[k] : c->damping_rotation[k - 3];
+        const int measure = yield_of(c, k) == MT_ABSENT
+                                ? -1
+                                : bushing_measure(b, body, (const int[2]){arm[0], -1}, dir, k);
+        mt_spring_def def = {.name = sys->bodies[body[1]].name,
+                             .measure = {measure, measure},
+                             .stiffness = mt_build_num_or(b, yield_of(c, k), b->zero),
+                             .free = MT_NO_NODE,
+                             .preload = MT_NO_NODE,
+                             .loss = build_loss(b, loss_along(b, &c->loss, k)),
+                             .item = sys->n_items - 1};
+        if (measure >= 0) {
+            append_spring_def(b, &def);
+        }
+        def.damper = true;
+        def.loss = MT_NO_NODE;
+        def.stiffness = mt_build_num_or(b, damping, b->zero);
+        if (measure >= 0 && def.stiffness != b->zero) {
+            append_spring_def(b, &def);
+        }
+    }
+}
+
 static mt_status build_joint(mt_builder *b, const mt_joint *joint)
 {
     const mt_joint_kind *const kind = mt_joint_kind_of(joint->type);
     int body[2];
     int arm[2];
-    int axis[2] = {b->axis_vec[2], -1};
+    int axis[2] = {joint_axis(b, joint), -1};
     if (!mt_build_attach(b, &joint->bodies[0], &body[0]) ||
         !mt_build_attach(b, &joint->bodies[1], &body[1])) {
         return mt_fail(b->err, MT_E_INPUT,
@@ -758,17 +875,16 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
     if (!closed || joint->length != MT_ABSENT) {
         b->sys->drawn_closed = false;
     }
-    if (joint->has_axis) {
-        mt_node node[3];
-        mt_build_coordinates(b, joint->axis, node);
-        axis[0] = mt_build_vec(b, MT_VEC_UNIT, node,
-                               mt_build_name(b, "axis of joint \"%s\"", joint->name.s));
-    }
     if (joint->has_axis_b) {
         mt_node node[3];
         mt_build_coordinates(b, joint->axis_b, node);
         axis[1] = mt_build_vec(b, MT_VEC_UNIT, node,
                                mt_build_name(b, "axis_b of joint \"%s\"", joint->name.s));
+    }
+    const int first[2] = {body[0], arm[0]};
+    if (joint->compliance != NULL) {
+        body[0] = build_carrier(b, joint, body[0]);
+        arm[0] = -1;
     }
     mt_system_joint *const made = new_joint(b, joint, body);
     if (made == NULL) {
@@ -782,6 +898,11 @@ static mt_status build_joint(mt_builder *b, const mt_joint *joint)
     made->count = b->sys->n_constraints - made->first;
     made->coordinate = coordinate_of(b, kind->coordinate, body, arm, axis[0]);
     made->angle = kind->coordinate == MT_COORDINATE_ANGLE;
+    if (joint->compliance != NULL) {
+        int dir[3];
+        yielding_axes(b, joint, axis[0], dir);
+        build_seat(b, joint, b->joint_at[joint - b->model->joints], first, dir);
+    }
     return MT_OK;
 }
 
@@ -795,6 +916,40 @@ mt_status mt_build_joints(mt_builder *b)
                 continue;
             }
             MT_TRY(pass == 1 ? build_gear(b, joint) : build_joint(b, joint));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_build_springs(mt_builder *b)
+{
+    for (int i = 0; i < b->model->n_springs; i++) {
+        const mt_spring *const spring = &b->model->springs[i];
+        mt_status rc = MT_OK;
+        if (!mt_model_present(&spring->in, b->sys->configuration)) {
+            continue;
+        }
+        switch (spring->type) {
+        case MT_SPRING_TORSION:
+            rc = build_torsion(b, spring);
+            break;
+        case MT_SPRING_AXIAL:
+            rc = build_axial(b, spring);
+            break;
+        case MT_SPRING_BAR:
+            rc = build_bar(b, spring);
+            break;
+        case MT_SPRING_BUSHING:
+            rc = build_bushing(b, spring);
+            break;
+        case MT_SPRING_TYPE_COUNT:
+            break;
+        }
+        MT_TRY(rc);
+    }
+    for (int i = 0; i < b->model->n_joints; i++) { /* after all others, which views count */
+        if (b->model->joints[i].compliance != NULL) {
+            build_bearing(b, &b->model->joints[i]);
         }
     }
     return MT_OK;

@@ -251,6 +251,27 @@ void mt_item_nums(mt_reader *r, const mt_key *key, mt_addr value, void *item)
         mt_read_nums(mt_model_reader_of(r), key, value, other(key, item));
 }
 
+void mt_item_loss(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_model_reader *const mr = mt_model_reader_of(r);
+    mt_loss *const loss = place_of_value(key, item);
+    const int wanted = mr->m->dimension == 2 ? 3 : 6;
+    int n = 0;
+    mt_num *const nums = mt_read_nums(mr, key, value, &n);
+    *loss = (mt_loss){.all = MT_ABSENT};
+    if (n == 1) {
+        loss->all = nums[0];
+    } else if (n > 0 && n != wanted) {
+        mt_diag_error(r->diags, value, "must be one number, or %s, not %d",
+                      wanted == 3 ? "three: along x, along y, about z"
+                                  : "six: along its three axes, about its three axes",
+                      n);
+    } else {
+        loss->n = n;
+        loss->each = nums;
+    }
+}
+
 void mt_item_vector(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     *(bool *)other(key, item) = read_vector(mt_model_reader_of(r), value, key->possible, NULL,

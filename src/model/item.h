@@ -76,6 +76,12 @@ mt_model_reader *mt_model_reader_of(mt_reader *r);
         .name = "at", .type = MT_KEY_TEXT_OR_LIST, MT_M_ROW(POINT), .read = mt_item_at,   \
         .at = offsetof(THIS, at), .other = MT_M_PLACE(int, n_at), .schema = MT_I_OF("at") \
     }
+/* mt_loss loss */
+#define MT_I_LOSS(...)                                                                   \
+    {                                                                                    \
+        .name = "loss_factor", .type = MT_KEY_NUMBER_OR_LIST, MT_M_ROW(LOSS),            \
+        MT_M_TO(mt_item_loss, mt_loss, loss), .least = 3, .most = 6, .says = __VA_ARGS__ \
+    }
 /* mt_axes axes */
 #define MT_I_AXES MT_M_PART("axes", false, axes, mt_axes, mt_axes_keys, NULL)
 /* Two names: mt_name[2], or structs that begin with it (mt_attach[2]) */
@@ -108,6 +114,7 @@ extern const char *const mt_origin_names[MT_ORIGIN_ASSUMED];
 void mt_item_name(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_num(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_nums(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_item_loss(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_vector(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_position(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_item_at(mt_reader *r, const mt_key *key, mt_addr value, void *item);
@@ -124,6 +131,7 @@ extern const mt_key_table mt_link_keys;
 extern const mt_key_table mt_axes_keys;
 extern const mt_key_table mt_section_keys;
 extern const mt_key_table mt_shear_keys;
+extern const mt_key_table mt_compliance_keys;
 extern const mt_key_table mt_joint_keys;
 extern const mt_key_table mt_spring_keys;
 extern const mt_key_table mt_damper_keys;

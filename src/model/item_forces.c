@@ -134,9 +134,8 @@ static void spring_defaults(void *item, mt_addr addr, int which)
         s->translation[k] = MT_ABSENT;
         s->rotation[k] = MT_ABSENT;
     }
-    mt_num *const nums[] = {&s->stiffness, &s->free_length,    &s->free_angle,
-                            &s->preload,   &s->youngs_modulus, &s->area,
-                            &s->density,   &s->loss_factor};
+    mt_num *const nums[] = {&s->stiffness,      &s->free_length, &s->free_angle, &s->preload,
+                            &s->youngs_modulus, &s->area,        &s->density,    &s->loss.all};
     for (int k = 0; k < MT_COUNT(nums); k++) {
         *nums[k] = MT_ABSENT;
     }
@@ -211,9 +210,10 @@ static const mt_key SPRING[] = {
     MT_I_NUM("area_m2", false, area, NOT_NEGATIVE, "Bar: area [m^2]."),
     MT_I_NUM("density_kg_per_m3", false, density, DENSITY,
              "Bar: density [kg/m^3]. Absent: without mass."),
-    MT_I_NUM("loss_factor", false, loss_factor, LOSS,
-             "Structural damping: the spring is k (1 + i loss_factor) in steady vibrations; "
-             "not negative. Absent: 0."),
+    MT_I_LOSS(
+        "Structural damping: the spring is k (1 + i loss_factor) in steady vibrations; not "
+        "negative. Of a bushing also a list by direction: along its three axes, then about "
+        "them (two dimensions: along x, along y, about z). Absent: 0."),
     MT_M_JUST(
         "stiffness_matrix", LIST, false, MATRIX,
         "Bushing, three dimensions: 6 rows of 6, symmetric (to six digits; anything else has "
@@ -506,6 +506,12 @@ static void check_together(mt_resolve *f, const mt_spring *s)
     if (s->matrix != NULL && f->m->dimension == 2) {
         mt_diag_error(f->d, s->name.addr,
                       "spring \"%s\": \"stiffness_matrix\" is for three dimensions", s->name.s);
+    }
+    if (s->loss.n > 0 && (s->type != MT_SPRING_BUSHING || s->matrix != NULL)) {
+        mt_diag_error(f->d, mt_resolve_addr(f->m, s->loss.each[0]),
+                      "spring \"%s\": \"loss_factor\" must be one number: only a bushing "
+                      "without \"stiffness_matrix\" has one for each direction",
+                      s->name.s);
     }
     if (free_given && s->preload != MT_ABSENT) {
         mt_diag_error(

@@ -1,10 +1,115 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Joints: each has what its type needs (mt_joint_kind). */
+#include <string.h>
+
 #include "model/item.h"
 #include "model/model.h"
 
 #define NAME_OF(id, name) name,
 static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
+
+/*
+ * Compliance. Lists have one entry for each of the joint's axes: a number, or "rigid".
+ */
+static void read_yields(mt_reader *r, const mt_key *key, mt_addr value, mt_num *x, bool turns)
+{
+    mt_model_reader *const mr = mt_model_reader_of(r);
+    const bool two = mr->m->dimension == 2;
+    const int wanted = !two ? 3 : turns ? 1 : 2;
+    mt_items items = mt_reader_one_or_items(r, value);
+    for (int k = 0; k < 3; k++) {
+        x[k] = MT_ABSENT;
+    }
+    if (value == MT_NO_ADDR) {
+        return;
+    }
+    if (items.count != wanted) {
+        mt_diag_error(r->diags, value, "a compliance in %s dimensions needs %d here, not %d",
+                      two ? "two" : "three", wanted, items.count);
+        return;
+    }
+    for (int k = two && turns ? 2 : 0; mt_items_next(&items); k++) {
+        const char *const text = mt_json_type_of(r->doc, items.at) == MT_JSON_STRING
+                                     ? mt_json_string(r->doc, items.at)
+                                     : NULL;
+        if (text == NULL || strcmp(text, "rigid") != 0) {
+            x[k] = mt_read_num(mr, items.at, key->possible, NULL);
+        }
+    }
+}
+
+static void read_yield_along(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    read_yields(r, key, value, ((mt_compliance *)item)->translation, false);
+}
+
+static void read_yield_about(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    read_yields(r, key, value, ((mt_compliance *)item)->rotation, true);
+}
+
+static void read_damping_along(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    read_yields(r, key, value, ((mt_compliance *)item)->damping_translation, false);
+}
+
+static void read_damping_about(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    read_yields(r, key, value, ((mt_compliance *)item)->damping_rotation, true);
+}
+
+static void compliance_defaults(void *item, mt_addr addr, int which)
+{
+    (void)which;
+    ((mt_compliance *)item)->addr = addr;
+}
+
+#define THIS mt_compliance
+static const mt_key COMPLIANCE[] = {
+    MT_M_PART("axes", false, axes, mt_axes, mt_axes_keys, NULL),
+    MT_M_JUST("stiffness_n_per_m", LIST, false, POSITIVE,
+              "Along the joint's axes [N/m], each a number or \"rigid\"; the last one is along "
+              "the joint's axis, where it has one. Absent: rigid.",
+              .examples = "[[3e7, 3e7, 1e7]]", .read = read_yield_along, .least = 2, .most = 3),
+    MT_M_JUST("stiffness_n_m_per_rad", NUMBER_OR_LIST, false, POSITIVE,
+              "About them [N m/rad]; in two dimensions about z. Absent: rigid.",
+              .examples = "[[4e4, 4e4, \"rigid\"]]", .read = read_yield_about, .least = 3,
+              .most = 3),
+    MT_M_JUST("damping_n_s_per_m", LIST, false, NOT_NEGATIVE,
+              "Viscous, beside the stiffness along the same axis [N s/m], \"rigid\" where that "
+              "is. Absent: none.",
+              .read = read_damping_along, .least = 2, .most = 3),
+    MT_M_JUST("damping_n_m_s_per_rad", NUMBER_OR_LIST, false, NOT_NEGATIVE,
+              "The same about them [N m s/rad].", .read = read_damping_about, .least = 3,
+              .most = 3),
+    MT_I_LOSS(
+        "Loss factor of all its stiffnesses, or a list by direction: along the three axes, "
+        "then about them. Absent: 0."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_compliance_keys = {
+    MT_I_TABLE("compliance", COMPLIANCE, mt_compliance), .defaults = compliance_defaults,
+    .says =
+        "What a joint yields: its first body holds, by springs at the joint's point, a "
+        "carrier without mass, on which the joint stands. What the joint holds yields where "
+        "a stiffness is given; what it leaves free stays free. The axes are carried by the "
+        "first body: the joint's `axis` is the last one (in two dimensions the second), and "
+        "axes.x, across it, the first; a joint without `axis` has `axes` as a bushing has "
+        "(absent: the drawing's)."};
+
+static void read_compliance(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_joint *const j = item;
+    j->compliance = NULL;
+    if (value != MT_NO_ADDR) {
+        j->compliance = mt_arena_alloc(r->mem, 1, sizeof *j->compliance);
+    }
+    if (j->compliance != NULL) {
+        (void)mt_members_read(r, value, key->of, j->compliance);
+    }
+}
 
 /* A joint that could not be read is of no type. */
 static void joint_finish(mt_reader *r, const mt_object *o, int which, void *item)
@@ -50,6 +155,11 @@ static const mt_key JOINT[] = {
     MT_I_NUM("ratio_m_per_rad", false, ratio_m_per_rad, NONZERO,
              "Rack: displacement of the second joint divided by the angle of the first "
              "[m/rad]: the pitch radius, with a sign; not 0."),
+    {.name = "compliance",
+     .type = MT_KEY_OBJECT,
+     .read = read_compliance,
+     .of = &mt_compliance_keys,
+     .says = "A bearing that yields. Absent: rigid."},
     MT_I_IN,
     MT_M_DESCRIPTION,
     MT_M_SOURCE,
@@ -221,6 +331,95 @@ static void check_bodies(mt_resolve *f, const mt_joint *j)
     }
 }
 
+static const char *const DIRECTIONS[2][6] = {
+    {"along its first axis", "along its second axis", "", "", "", "about z"},
+    {"along its first axis", "along its second axis", "along its third axis",
+     "about its first axis", "about its second axis", "about its third axis"}};
+
+/* Every stiffness is where the joint holds, every damping beside a stiffness; true where there
+ * is any. */
+static bool check_yields(mt_resolve *f, const mt_joint *j)
+{
+    const mt_compliance *const c = j->compliance;
+    const unsigned holds = mt_joint_kind_of(j->type)->holds[f->m->dimension - 2];
+    bool any = false;
+    for (int k = 0; k < 6; k++) {
+        const char *const where = DIRECTIONS[f->m->dimension - 2][k];
+        const mt_num stiff = k < 3 ? c->translation[k] : c->rotation[k - 3];
+        const mt_num damping = k < 3 ? c->damping_translation[k] : c->damping_rotation[k - 3];
+        any = any || stiff != MT_ABSENT;
+        if (stiff != MT_ABSENT && (holds >> k & 1U) == 0) {
+            mt_diag_error(f->d, mt_resolve_addr(f->m, stiff),
+                          "%s %s joint holds nothing %s that could yield: write \"rigid\"",
+                          mt_joint_article(j->type), mt_joint_type_name(j->type), where);
+        } else if (damping != MT_ABSENT && stiff == MT_ABSENT) {
+            mt_diag_error(f->d, mt_resolve_addr(f->m, damping),
+                          "joint \"%s\" is rigid %s: damping there does nothing", j->name.s,
+                          where);
+        }
+    }
+    return any;
+}
+
+/* The stiffnesses along and about the first two axes are written alike. */
+static bool is_round(const mt_model *m, const mt_compliance *c)
+{
+    const mt_loss *const l = &c->loss;
+    bool round = true;
+    for (int k = 0; k < 2; k++) {
+        const mt_num *const x = k == 0 ? c->translation : c->rotation;
+        const mt_num *const d = k == 0 ? c->damping_translation : c->damping_rotation;
+        const mt_num *const loss = l->n > 3 * k ? l->each + (ptrdiff_t)(3 * k) : NULL;
+        const mt_position first = {.point = MT_ABSENT,
+                                   .x = {x[0], d[0], loss == NULL ? MT_ABSENT : loss[0]}};
+        const mt_position second = {.point = MT_ABSENT,
+                                    .x = {x[1], d[1], loss == NULL ? MT_ABSENT : loss[1]}};
+        round = round && mt_resolve_same_position(m, &first, &second);
+    }
+    return round;
+}
+
+static void check_compliance(mt_resolve *f, const mt_joint *j)
+{
+    const mt_compliance *const c = j->compliance;
+    const mt_axes *const a = &c->axes;
+    const mt_joint_kind *const kind = mt_joint_kind_of(j->type);
+    const bool space = f->m->dimension == 3;
+    if (kind->holds[f->m->dimension - 2] == 0) {
+        mt_diag_error(f->d, c->addr, "%s %s joint has no \"compliance\"%s",
+                      mt_joint_article(j->type), mt_joint_type_name(j->type),
+                      j->type == MT_JOINT_DISTANCE ? ": a rod that yields is an axial spring"
+                                                   : "");
+        return;
+    }
+    if (!check_yields(f, j)) {
+        mt_diag_error(f->d, c->addr,
+                      "the compliance of joint \"%s\" needs a stiffness: \"stiffness_n_per_m\" "
+                      "or \"stiffness_n_m_per_rad\"",
+                      j->name.s);
+    }
+    if (!kind->axis[f->m->dimension - 2]) {
+        mt_resolve_axes(f, j->name, "joint", a);
+    } else if (a->given && (!space || !a->has_x || a->has_y || a->has_z || a->n_angles > 0)) {
+        mt_diag_error(f->d, a->addr, "the compliance of joint \"%s\" %s", j->name.s,
+                      space ? "needs \"x\" alone as \"axes\": the third is the joint's axis"
+                            : "has no \"axes\": the second is the joint's axis");
+    } else if (space && !a->given && !is_round(f->m, c)) {
+        mt_diag_error(
+            f->d, c->addr,
+            "the compliance of joint \"%s\" is not the same along and about its first "
+            "two axes: give \"axes\": {\"x\": ...}, which says where the first points",
+            j->name.s);
+    }
+    if (mt_resolve_is_point_mass(f, &j->bodies[0])) {
+        mt_diag_error(
+            f->d, j->bodies[0].name.addr,
+            "\"%s\" is a point mass, which does not turn and cannot carry the axes of "
+            "a compliance",
+            j->bodies[0].name.s);
+    }
+}
+
 static void check_joint(mt_resolve *f, mt_joint *j)
 {
     if (!mt_joint_kind_of(j->type)->in[f->m->dimension - 2]) {
@@ -233,6 +432,9 @@ static void check_joint(mt_resolve *f, mt_joint *j)
         check_gear(f, j);
     } else {
         check_bodies(f, j);
+    }
+    if (j->compliance != NULL) {
+        check_compliance(f, j);
     }
 }
 

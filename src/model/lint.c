@@ -635,6 +635,12 @@ static void lint_links(mt_lint *j)
     }
 }
 
+static void lint_loss(mt_lint *j, const mt_item *item, const mt_loss *loss, const char *member)
+{
+    (void)lint_item_number(j, item, loss->all, member);
+    listed(j, item, loss->n, loss->each, member);
+}
+
 /* A constant of a spring may be negative (a spring over its dead centre, a magnet, a load that
  * buckles); a bar is a piece of material. */
 static void lint_springs(mt_lint *j)
@@ -652,7 +658,7 @@ static void lint_springs(mt_lint *j)
         (void)lint_item_number(j, &item, s->area, "area_m2"); /* 0: a bar that may be added */
         (void)lint_item_number(j, &item, s->density, "density_kg_per_m3");
         (void)lint_item_number(j, &item, s->free_length, "free_length_m");
-        (void)lint_item_number(j, &item, s->loss_factor, "loss_factor");
+        lint_loss(j, &item, &s->loss, "loss_factor");
     }
 }
 
@@ -665,6 +671,17 @@ static void lint_sensors(mt_lint *j)
     }
 }
 
+static void lint_compliance(mt_lint *j, const mt_item *item, const mt_compliance *c)
+{
+    const bool two = j->model->dimension == 2;
+    const int first = two ? 2 : 0; /* of what turns */
+    listed(j, item, two ? 2 : 3, c->translation, "compliance/stiffness_n_per_m");
+    listed(j, item, 3 - first, c->rotation + first, "compliance/stiffness_n_m_per_rad");
+    listed(j, item, two ? 2 : 3, c->damping_translation, "compliance/damping_n_s_per_m");
+    listed(j, item, 3 - first, c->damping_rotation + first, "compliance/damping_n_m_s_per_rad");
+    lint_loss(j, item, &c->loss, "compliance/loss_factor");
+}
+
 static void lint_joints(mt_lint *j)
 {
     for (int i = 0; i < j->model->n_joints; i++) {
@@ -673,6 +690,9 @@ static void lint_joints(mt_lint *j)
         if (mt_model_present(&joint->in, j->configuration)) {
             (void)lint_item_number(j, &item, joint->length, "length_m");
             (void)lint_item_number(j, &item, joint->mass, "mass_kg");
+            if (joint->compliance != NULL) {
+                lint_compliance(j, &item, joint->compliance);
+            }
             nonzero(j, &item, joint->ratio, "ratio");
             nonzero(j, &item, joint->ratio_m_per_rad, "ratio_m_per_rad");
         }

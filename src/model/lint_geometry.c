@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/format.h"
 #include "base/possible.h"
@@ -221,20 +222,40 @@ static void lint_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
     }
 }
 
-/* Check that an item's own axes have directions. */
-static void lint_own_axes(mt_lint *j, const mt_item *item, const mt_axes *a, mt_addr name)
+/* Check that an item's own axes, a member `where` of it, have directions. */
+static void lint_own_axes(mt_lint *j, const mt_item *item, const mt_axes *a, const char *where,
+                          mt_addr name)
 {
     double e[AXES][AXES];
     const mt_axes_fault fault = mt_axes_of(a, j->value, e);
-    const char *const other = a->has_y ? "axes/y" : "axes/z";
-    if (fault == MT_AXES_NO_X) {
-        fault_axis(j, item, a->x, name, "axes/x", "has length 0 and no direction");
-    } else if (fault == MT_AXES_NO_OTHER) {
-        fault_axis(j, item, a->has_y ? a->y : a->z, name, other,
-                   "has length 0 and no direction");
-    } else if (fault == MT_AXES_PARALLEL) {
-        fault_axis(j, item, a->has_y ? a->y : a->z, name, other,
-                   "is parallel to x: two vectors along the same line do not make axes");
+    const bool first = fault == MT_AXES_NO_X;
+    const mt_num *const x = first ? a->x : a->has_y ? a->y : a->z;
+    const char *const member = first ? "x" : a->has_y ? "y" : "z";
+    if (fault != MT_AXES_SOUND) {
+        fault_axis(j, item, x, name, mt_arena_printf(j->out->mem, "%s/%s", where, member),
+                   fault == MT_AXES_PARALLEL
+                       ? "is parallel to x: two vectors along the same line do not make axes"
+                       : "has length 0 and no direction");
+    }
+}
+
+/* And those of a compliance, of which the joint's own axis is one. */
+static void lint_yielding_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
+{
+    const mt_axes *const own = &joint->compliance->axes;
+    mt_axes both = {.given = true, .has_x = true, .has_y = true};
+    double e[AXES][AXES];
+    if (!own->given || !joint->has_axis) {
+        lint_own_axes(j, item, own, "compliance/axes", joint->name.addr);
+        return;
+    }
+    memcpy(both.x, joint->axis, sizeof both.x);
+    memcpy(both.y, own->x, sizeof both.y);
+    const mt_axes_fault fault = mt_axes_of(&both, j->value, e);
+    if (fault == MT_AXES_NO_OTHER || fault == MT_AXES_PARALLEL) {
+        fault_axis(j, item, own->x, joint->name.addr, "compliance/axes/x",
+                   fault == MT_AXES_PARALLEL ? "is parallel to the joint's axis"
+                                             : "has length 0 and no direction");
     }
 }
 
@@ -297,7 +318,7 @@ void mt_lint_structure(mt_lint *j)
         const mt_body *const b = &m->bodies[i];
         const mt_item item = {"body", "bodies", i, b->name.s};
         if (mt_model_present(&b->in, j->configuration)) {
-            lint_own_axes(j, &item, &b->axes, b->name.addr);
+            lint_own_axes(j, &item, &b->axes, "axes", b->name.addr);
         }
     }
     for (int i = 0; i < m->n_links; i++) {
@@ -316,7 +337,7 @@ void mt_lint_structure(mt_lint *j)
         if (!mt_model_present(&s->in, j->configuration)) {
             continue;
         }
-        lint_own_axes(j, &item, &s->axes, s->name.addr);
+        lint_own_axes(j, &item, &s->axes, "axes", s->name.addr);
         lint_matrix(j, &item, s);
         if (line && needs_drawn_length(j, s)) {
             lint_line(j, &item, s->bodies, s->n_at, s->at, s->name.addr);
@@ -329,6 +350,9 @@ void mt_lint_structure(mt_lint *j)
             continue;
         }
         lint_axes(j, &item, joint);
+        if (joint->compliance != NULL) {
+            lint_yielding_axes(j, &item, joint);
+        }
         if (mt_joint_kind_of(joint->type)->closes == MT_CLOSES_LENGTH) {
             lint_line(j, &item, joint->bodies, joint->n_at, joint->at, joint->name.addr);
         }

@@ -216,6 +216,29 @@ typedef struct mt_link {
 typedef enum mt_joint_type { MT_JOINT_LIST(MT_JOINT_ENUM) MT_JOINT_TYPE_COUNT } mt_joint_type;
 #undef MT_JOINT_ENUM
 
+/* Loss factor: one of all directions (absent: 0), or of a bushing n = 6 by direction, x y z rx
+ * ry rz (in two dimensions 3: x y r). */
+typedef struct mt_loss {
+    mt_num all;
+    int n;
+    mt_num *each;
+} mt_loss;
+
+/*
+ * What a joint yields: between the first body and a carrier without mass, on which the joint
+ * stands, along the joint's axes: e2 along `axis` where it has one (in two dimensions e1), and
+ * e0 as axes.x, where given, lies across it; otherwise `axes`. Absent: rigid.
+ */
+typedef struct mt_compliance {
+    mt_axes axes;
+    mt_vector translation;         /* N/m */
+    mt_vector rotation;            /* N m/rad */
+    mt_vector damping_translation; /* N s/m, beside a stiffness; absent: 0 */
+    mt_vector damping_rotation;    /* N m s/rad */
+    mt_loss loss;
+    mt_addr addr;
+} mt_compliance;
+
 typedef struct mt_joint {
     mt_name name;
     mt_joint_type type;
@@ -232,8 +255,9 @@ typedef struct mt_joint {
     mt_num mass;      /* distance: kg of a uniform thin rod between the points; absent: none */
     mt_name gear_joints[2]; /* gear, rack: coordinate of [1] = ratio * angle of [0] */
     int gear_joint[2];
-    mt_num ratio;           /* gear: 1 */
-    mt_num ratio_m_per_rad; /* rack */
+    mt_num ratio;              /* gear: 1 */
+    mt_num ratio_m_per_rad;    /* rack */
+    mt_compliance *compliance; /* NULL: rigid */
     mt_presence in;
 } mt_joint;
 
@@ -268,7 +292,7 @@ typedef struct mt_spring {
     mt_num youngs_modulus; /* bar */
     mt_num area;
     mt_num density;
-    mt_num loss_factor;    /* not for dampers; absent: 0 */
+    mt_loss loss;          /* not for dampers */
     mt_axes axes;          /* bushing: of the reference position, attached to bodies[0] */
     mt_vector translation; /* bushing N/m */
     mt_vector rotation;    /* bushing N m/rad */
@@ -541,6 +565,9 @@ typedef struct mt_joint_kind {
     bool axis_b;  /* axis_b needed in three dimensions */
     /* [dimension - 2][body]: uses the body's orientation, which a point mass does not have */
     bool turns[2][2];
+    /* [dimension - 2]: what it holds, bits 0 ... 5: along its axes, about them; the axis is the
+     * last one (in two dimensions of x and y). Of a universal joint along them alone */
+    unsigned holds[2];
     bool couples;        /* couples the coordinates of two joints and has no bodies */
     const char *article; /* before the name of the type; NULL: "a" */
 } mt_joint_kind;

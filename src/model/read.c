@@ -479,13 +479,13 @@ const mt_schema_type *mt_model_types(int *n)
 const mt_key_table *const *mt_model_key_tables(int *n)
 {
     static const mt_key_table *const tables[] = {
-        &mt_model_keys,   &mt_curve_keys,         &mt_parameter_keys,
-        &mt_body_keys,    &mt_axes_keys,          &mt_link_keys,
-        &mt_section_keys, &mt_shear_keys,         &mt_joint_keys,
-        &mt_spring_keys,  &mt_damper_keys,        &mt_sensor_keys,
-        &mt_mode_keys,    &mt_configuration_keys, &mt_drive_keys,
-        &mt_hold_keys,    &mt_load_keys,          &units_keys,
-        &mt_damping_keys,
+        &mt_model_keys,   &mt_curve_keys,   &mt_parameter_keys,
+        &mt_body_keys,    &mt_axes_keys,    &mt_link_keys,
+        &mt_section_keys, &mt_shear_keys,   &mt_compliance_keys,
+        &mt_joint_keys,   &mt_spring_keys,  &mt_damper_keys,
+        &mt_sensor_keys,  &mt_mode_keys,    &mt_configuration_keys,
+        &mt_drive_keys,   &mt_hold_keys,    &mt_load_keys,
+        &units_keys,      &mt_damping_keys,
     };
     *n = MT_COUNT(tables);
     return tables;

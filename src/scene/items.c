@@ -601,6 +601,9 @@ mt_status mt_scene_springs(mt_scene_frame *f, mt_err *err)
         out->stiffness = n == 1 ? f->value[f->sys->springs[at].stiffness] : nan("");
         at += n;
     }
+    for (; at < f->sys->n_springs; at++) { /* of joints that yield */
+        f->spring_of[at] = -1;
+    }
     return mt_arena_check(f->mem, err);
 }
 

@@ -37,6 +37,12 @@ def each(change):
     return lambda v: [change(x) for x in v]
 
 
+def soft(value):
+    """Every number of a compliance that is not "rigid"."""
+    change = lambda x: x if x == "rigid" else value
+    return lambda v: [change(x) for x in v] if isinstance(v, list) else change(v)
+
+
 def level(change):
     """The level of each breakpoint that has one."""
     return lambda v: [[p[0], change(p[1])] if isinstance(p, list) else p for p in v]
@@ -114,7 +120,11 @@ WRONG = {
     "radius_of_gyration_m": NEGATIVE, "free_length_m": NEGATIVE, "area_m2": [(set_to(-1), "error", "must be above 0|must not be negative")],
     "second_moment_m4": POSITIVE, "second_moment_other_m4": POSITIVE, "torsion_constant_m4": NEGATIVE, "coefficient": POSITIVE, "coefficient_other": POSITIVE,
     "poissons_ratio": [(set_to(0.6), "error", "not above 0.5")], "fraction": [(set_to(1.1), "error", "within 0 and 1")], "axis": NO_DIRECTION,
-    "axis_b": NO_DIRECTION, ("axes", "x"): NO_DIRECTION, ("axes", "y"): NO_DIRECTION, ("axes", "z"): NO_DIRECTION, "hinge_axis": NO_DIRECTION, ("joint", "ratio"): [(set_to(0), "error", "must not be 0")],
+    "axis_b": NO_DIRECTION, ("axes", "x"): NO_DIRECTION, ("axes", "y"): NO_DIRECTION, ("axes", "z"): NO_DIRECTION, "hinge_axis": NO_DIRECTION,
+    ("joint", "ratio"): [(set_to(0), "error", "must not be 0")],
+    ("compliance", "stiffness_n_per_m"): [(soft(0), "error", "must be above 0")], ("compliance", "stiffness_n_m_per_rad"): [(soft(0), "error", "must be above 0")],
+    ("compliance", "damping_n_s_per_m"): [(soft(-1), "error", "must not be negative")],
+    ("compliance", "damping_n_m_s_per_rad"): [(soft(-1), "error", "must not be negative")],
     "ratio_m_per_rad": [(set_to(0), "error", "must not be 0")], ("joint", "length_m"): POSITIVE, ("damping", "ratio"): NEGATIVE, "mass_per_s": NEGATIVE,
     "stiffness_s": NEGATIVE, "ratios": [(last(set_to(-1)), "error", "must not be negative")],
     ("damping", "modes"): [(lambda v: dict.fromkeys(v, -1), "error", "must not be negative")],

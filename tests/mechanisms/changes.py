@@ -39,6 +39,8 @@ def items(model):
         yield configuration
         if "drive" in configuration:
             yield configuration["drive"]
+    for joint in model.get("joints", []):
+        yield joint.get("compliance", {})
     for link in model.get("links", []):
         yield link.get("section", {})
 
@@ -83,7 +85,7 @@ def direction(rng, model):
     _ends(rng, model)
     turned = set()
     for joint in model.get("joints", []):
-        if joint["type"] in TURNABLE and rng.random() < 0.6:
+        if joint["type"] in TURNABLE and "compliance" not in joint and rng.random() < 0.6:
             joint["bodies"].reverse()
             turned.add(joint["name"])
             if joint["type"] == "distance":
@@ -202,6 +204,9 @@ def place(rng, model):
     turn = lambda v: [short(sum(q[i][k] * number(v[k]) for k in range(dim))) for i in range(dim)]
     move = lambda v: [short(number(x) + s) for x, s in zip(turn(v), shift)]
     both = lambda v: [both(w) for w in v] if isinstance(v[0], list) else move(v)
+    for joint in model.get("joints", []):
+        if "compliance" in joint and "axis" not in joint:
+            joint["compliance"].setdefault("axes", {"x": [1, 0, 0], "y": [0, 1, 0]} if dim == 3 else {"x": [1, 0]})
     for item in items(model):
         for member in ("at", "centre", "from", "to"):
             if member in item:

@@ -42,6 +42,19 @@ def _damper(spring, factor):
     return out
 
 
+def _bearing(rng, joint, omega, dampers, losses):
+    """Damping of what a joint yields: a loss factor, and dampers beside its stiffnesses."""
+    own, name = joint["compliance"], f"{joint['name']}.bearing"
+    if rng.random() < 0.6:
+        losses[name] = own["loss_factor"] = rng.uniform(0.01, 0.3)
+    if rng.random() < 0.6:
+        dampers[name] = rng.uniform(0.01, 0.6) / omega
+        beside = lambda k: k if k == "rigid" else f"({k})*{dampers[name]!r}"
+        for member, damping in (("stiffness_n_per_m", "damping_n_s_per_m"), ("stiffness_n_m_per_rad", "damping_n_m_s_per_rad")):
+            if member in own:
+                own[damping] = [beside(k) for k in own[member]] if isinstance(own[member], list) else beside(own[member])
+
+
 def damp(rng, model, modes):
     """The model with damping, and what it is made of: {spring: c/k}, {spring or link: eta}, its "damping"."""
     out, dampers, losses = copy.deepcopy(model), {}, {}
@@ -57,6 +70,11 @@ def damp(rng, model, modes):
         for item in out.get("springs", []) + out.get("links", []):
             if rng.random() < 0.6:
                 losses[item["name"]] = item["loss_factor"] = rng.uniform(0.01, 0.3)
+            if "axes" in item and "stiffness_matrix" not in item:  # by direction
+                losses[item["name"]] = item["loss_factor"] = [rng.uniform(0.01, 0.3) for _ in range(3 if out["dimension"] == 2 else 6)]
+    for joint in out.get("joints", []):
+        if "compliance" in joint:
+            _bearing(rng, joint, rng.choice(omega), dampers, losses)
     given = {"ratio": RATIO, "ratios": [rng.uniform(0, 0.3) for _ in range(rng.randint(1, len(omega)))],
              "mass_per_s": rng.uniform(0, 0.3) * omega[0], "stiffness_s": rng.uniform(0, 0.1) / omega[-1]}
     out["damping"] = {k: v for k, v in given.items() if rng.random() < 0.5}
@@ -89,6 +107,10 @@ def roots(modes, model, dampers, losses):
         link = spring.name.split(".")[0]
         lost, slow = losses.get(spring.name, losses.get(link, 0)), dampers.get(spring.name, 0)
         if lost or slow:
+            if isinstance(lost, list):  # a bushing without couplings: one part for each direction that is not slack
+                stiff = [i for i, row in enumerate(spring.k) if row[i]]
+                h = h + sum(lost[i] * _gamma([part], modes.shapes) for i, part in zip(stiff, elastic))
+                lost = 0
             gamma = _gamma(elastic, modes.shapes)
             h, c = h + lost * gamma, c + slow * gamma
     vibrations = omega[omega > 0]

@@ -500,6 +500,59 @@ def _axes(rng, dim):
     return m.done()
 
 
+HELD = {2: {"fixed": (0, 1, 2), "revolute": (0, 1), "prismatic": (0, 2), "pin-in-slot": (0,), "orientation": (2,)},
+        3: {"fixed": range(6), "revolute": range(5), "prismatic": (0, 1, 3, 4, 5), "cylindrical": (0, 1, 3, 4), "spherical": range(3),
+            "universal": range(3), "planar": (2, 3, 4), "point-on-line": (0, 1), "point-on-plane": (2,), "orientation": (3, 4, 5)}}
+
+
+def _yield(m, joint):
+    """A compliance along some of what the joint holds."""
+    held = list(HELD[m.dim].get(joint["type"], ()))
+    soft = [k for k in held if m.chance(0.6)] or held[:1]
+    if not soft or not m.turns(joint["bodies"][0]):
+        return
+    n = m.dim
+    numbers = [("rigid" if k not in soft else m.parameter("k", m.size(1e3, 1e6), "N/m") if k < n else m.parameter("c", m.size(1e2, 1e5), "N m/rad"))
+               for k in range(6 if n == 3 else 3)]
+    own = {"stiffness_n_per_m": numbers[:n], "stiffness_n_m_per_rad": numbers[n:] if n == 3 else numbers[n]}
+    for member in list(own):
+        if all(x == "rigid" for x in (own[member] if isinstance(own[member], list) else [own[member]])):
+            del own[member]
+    if "axis" not in joint:
+        if m.chance(0.5):
+            own["axes"] = _own_axes(m)
+    elif n == 3:
+        while True:
+            own["axes"] = {"x": [m.rng.randint(-3, 3) for _ in range(3)]}
+            if any(own["axes"]["x"][i] * joint["axis"][(i + 1) % 3] - own["axes"]["x"][(i + 1) % 3] * joint["axis"][i] for i in range(3)):
+                break
+    joint["compliance"] = own
+
+
+def _yielding(rng, dim):
+    """Joints that yield, at rest, loaded or driven."""
+    if rng.random() < 0.3:
+        m = Maker(rng, dim)
+        m.model = _driven(rng, dim)
+        m.model.setdefault("parameters", {})
+        m.model.setdefault("springs", [])
+    else:
+        m = Maker(rng, dim)
+        m.tree(rng.randint(1, 3), tied=1.0, masses=0.1)
+        m.springs(rng.randint(1, 3))
+        if m.chance(0.3):
+            m.gears(1)
+        if m.chance(0.5):
+            m.gravity()
+            m.preloads(0.3)
+            m.stand()
+    m.model["name"] = "Joints that yield"
+    for joint in m.model["joints"]:
+        if m.chance(0.7) and not any(isinstance(x, str) for x in joint.get("axis", [])):
+            _yield(m, joint)
+    return m.done()
+
+
 def _of(maker, dim):
     return lambda rng: maker(rng, dim)
 
@@ -525,6 +578,8 @@ for _name, _maker in (("free", _unloaded), ("redundant", _redundant), ("loaded",
     KINDS[f"{_name}3"] = _of(_maker, 3)
 KINDS["axes2"] = _of(_axes, 2)
 KINDS["axes3"] = _of(_axes, 3)
+KINDS["yielding2"] = _of(_yielding, 2)
+KINDS["yielding3"] = _of(_yielding, 3)
 KINDS["rods2"] = _of(_rods, 2)
 KINDS["rods3"] = _of(_rods, 3)
 KINDS["hanging"] = hanging

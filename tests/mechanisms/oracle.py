@@ -448,7 +448,9 @@ class Oracle:
                 at = joint.get("at", [Decimal(0)] * self.dim)  # of no account where it is absent
                 if isinstance(at, str) or not isinstance(at[0], (list, str)) or self._is_point(at):
                     at = [at, at]
-                self._joint(joint["name"], joint["type"], joint["bodies"], [self.v(p) for p in at], self.v(joint["axis"]) if "axis" in joint else None,
+                at = [self.v(p) for p in at]
+                bodies = self._carried(joint, at) if "compliance" in joint else joint["bodies"]
+                self._joint(joint["name"], joint["type"], bodies, at, self.v(joint["axis"]) if "axis" in joint else None,
                             self.v(joint["axis_b"]) if "axis_b" in joint else None, self.n(joint["length_m"]) if "length_m" in joint else None)
         for joint in self.model.get("joints", []):
             if self.here(joint) and "mass_kg" in joint:
@@ -457,6 +459,30 @@ class Oracle:
             if self.here(joint) and joint["type"] in COUPLINGS:
                 a, b = (self.coordinate[j] for j in joint["joints"])
                 self._hold(joint["name"], geared(a, b, self.n(joint[COUPLINGS[joint["type"]]])))
+
+    def _carried(self, joint, at):
+        """A body without mass between the first body and the joint: springs where the joint yields, equations elsewhere."""
+        own, name, first = joint["compliance"], f"{joint['name']}.bearing", joint["bodies"][0]
+        where = at[0] if "at" in joint else [Decimal(0)] * self.dim if first == "ground" else self.bodies[first].centre
+        self._body(name, where, Decimal(0), Decimal(0) if self.dim == 2 else [[Decimal(0)] * 3] * 3)
+        e = self._axes(own) if "axis" not in joint else None
+        if "axis" in joint:
+            last = unit(self.v(joint["axis"]))
+            side = self.v(own["axes"]["x"]) if "axes" in own else self._perpendicular(last)[0]
+            along = sum(a * b for a, b in zip(side, last))
+            side = unit([a - along * b for a, b in zip(side, last)])
+            e = [side, last] if self.dim == 2 else [side, cross(last, side), last]
+        apart = self._apart([first, name], [where, where])
+        measures = [plain(product(self.direction(first, u), apart)) for u in e] + self._turns([first, name], e)
+        given = own.get("stiffness_n_per_m", ["rigid"] * self.dim), own.get("stiffness_n_m_per_rad", ["rigid"] * len(e) if self.dim == 3 else "rigid")
+        given = [x for many in given for x in (many if isinstance(many, list) else [many])]
+        soft = [(m, self.n(k)) for m, k in zip(measures, given) if k != "rigid"]
+        self.springs.append(Spring(name, [m for m, _ in soft], [[k if i == j else 0 for j in range(len(soft))] for i, (_, k) in enumerate(soft)],
+                                   [None] * len(soft), [0] * len(soft)))
+        for measure, k in zip(measures, given):
+            if k == "rigid":
+                self._hold(name, measure, Decimal(0))
+        return [name, joint["bodies"][1]]
 
     def _is_point(self, at):
         """A list of coordinates, some of which are expressions, and not of two names of points."""
