@@ -86,7 +86,7 @@ static void text_matrix(const mt_mac_row *row, mt_text *out)
     mt_table_free(&t);
 }
 
-/* Write which modes of one mt_mac_side are compared. */
+/* Write which modes of one side are compared. */
 static void write_side(const mt_mac_side *x, mt_text *out)
 {
     const int all = mt_modal_vibrations(&x->a->modes);

@@ -7,7 +7,6 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/shipped.h"
-#include "cli/vibrated.h"
 #include "report/table.h"
 #include "result/write.h"
 

@@ -8,7 +8,6 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/shipped.h"
-#include "cli/vibrated.h"
 #include "inspect/response.h"
 #include "io/folder.h"
 #include "report/table.h"
@@ -18,7 +17,112 @@ enum { DIGITS = 5 };
 
 static const double TWO_PI = 6.283185307179586477;
 
-/* A response as text, JSON and CSV. */
+/* What a profile of vibration does to the outputs of a response. */
+
+/* Columns that identify the pair, before its values. */
+static void pair_columns(const mt_response_view *v, mt_table *t)
+{
+    if (v->response.ports.n_in > 1) {
+        mt_table_column(t, "input", "input", MT_ALIGN_LEFT);
+    }
+    mt_table_column(t, "output", "output", MT_ALIGN_LEFT);
+}
+
+static void pair_cells(const mt_response_view *v, int pair, mt_table *t)
+{
+    if (v->response.ports.n_in > 1) {
+        mt_table_text(t, mt_response_view_input(v, pair)->name);
+    }
+    mt_table_text(t, mt_response_view_output(v, pair)->name);
+}
+
+static void print_rows(const mt_response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    pair_columns(v, &t);
+    mt_vibrated_columns(&t);
+    for (int p = 0; p < v->profiled.n_pairs; p++) {
+        const mt_vibrated row = mt_response_view_vibrated(v, p);
+        pair_cells(v, p, &t);
+        mt_vibrated_row(&t, &row);
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_text_add(out, "\n");
+    mt_table_free(&t);
+}
+
+static void print_tones(const mt_response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    pair_columns(v, &t);
+    mt_vibrated_tone_columns(&t);
+    for (int p = 0; p < v->profiled.n_pairs; p++) {
+        const mt_vibrated row = mt_response_view_vibrated(v, p);
+        for (int i = 0; i < v->question->profile->n_tones; i++) {
+            pair_cells(v, p, &t);
+            mt_vibrated_tone_row(&t, &row, i);
+        }
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_text_add(out, v->profiled.no_sums == NULL
+                         ? "  Each is the largest within its range, proven up to that part of "
+                           "it.\n\n"
+                         : "\n");
+    mt_table_free(&t);
+}
+
+/* Print the reason for a pair without a value; *said: the pole named last, so that pairs with
+ * the same pole are reported once. */
+static void print_end(const mt_response_view *v, int pair, int *said, mt_text *out)
+{
+    const mt_vibration_response *const a = &v->profiled.answers[pair];
+    if (a->end == MT_FORCED_FINITE || a->pole < 0 || a->pole == *said) {
+        return;
+    }
+    const double complex pole = v->profiled.poles[a->pole];
+    const int mode = mt_response_view_mode(v, pole);
+    const char *const name =
+        mode > 0 ? mt_mode_name(v->s, v->response.sys->configuration, mode) : NULL;
+    *said = a->pole;
+    mt_text_addf(out, "  Vibration mode %d%s%s%s, %.6g Hz, ", mode, name == NULL ? "" : " \"",
+                 name == NULL ? "" : name, name == NULL ? "" : "\"", cabs(pole) / TWO_PI);
+    mt_text_add(out, a->end == MT_FORCED_INFINITE
+                         ? "has no damping, and the profile acts there: what it shakes is "
+                           "infinite.\n"
+                         : "grows by itself: there is no steady response.\n");
+}
+
+static void response_vibration_print(const mt_response_view *v, mt_text *out)
+{
+    const mt_vibration *const p = v->profiled.v;
+    const char *const axis = mt_vibrated_axis(p);
+    int said = -1;
+    mt_text_addf(out, "  Under %s%s%s", mt_vibrated_name(p), axis == NULL ? "" : ", along ",
+                 axis == NULL ? "" : axis);
+    if (p->n_random > 0) {
+        mt_text_addf(out, " (%.5g g RMS)", mt_vibration_rms(p) / MT_STANDARD_GRAVITY);
+    }
+    mt_text_add(out, "; ");
+    mt_vibrated_rule(p, out);
+    mt_text_add(out, ":\n");
+    print_rows(v, out);
+    for (int k = 0; k < v->profiled.n_pairs; k++) {
+        print_end(v, k, &said, out);
+    }
+    mt_text_add(out, said >= 0 ? "\n" : "");
+    if (p->n_tones > 0) {
+        print_tones(v, out);
+    }
+    if (v->profiled.no_sums != NULL) {
+        mt_text_addf(out,
+                     "  %s. The numbers are therefore by quadrature: errors are estimates, and "
+                     "of tones nothing is proven.\n\n",
+                     v->profiled.no_sums);
+    }
+    mt_vibrated_marks(p, out);
+}
+
+/* A response as text and CSV. */
 
 enum { HZ_DIGITS = 7, HEADING_TEXT = 160 };
 
@@ -327,7 +431,7 @@ static void response_print(const mt_response_view *v, mt_text *out)
                  v->response.ports.in[0].name, v->response.ports.n_in > 1 ? ", ..." : "",
                  v->opt.from / TWO_PI, v->opt.to / TWO_PI);
     if (v->question->profile != NULL) {
-        mt_vibrated_print(v, out);
+        response_vibration_print(v, out);
     }
     if (v->curve.n_extremes > 0) {
         print_extremes(v, out);

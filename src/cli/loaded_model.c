@@ -79,6 +79,7 @@ void mt_loaded_model_warn_overridden(const mt_loaded_model *s, int c)
     }
 }
 
+/* The record of a configuration without an answer. */
 static void put_failed(mt_json_writer *w, const char *configuration, const mt_err *err)
 {
     const mt_failed_row row = {configuration, err->text};
@@ -151,4 +152,98 @@ mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *f
     }
     *path = mt_file_join("x", given);
     return *path == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+/* Vibrations under a profile as tables and text. */
+
+static const double TWO_PI = 6.28318530717958647693;
+
+enum { DIGITS = 5, HZ_DIGITS = 6, BOUND_DIGITS = 2 };
+
+/* The text in place of a missing number. */
+static const char *end_of(const mt_vibration_response *r)
+{
+    return r->end == MT_FORCED_FINITE ? NULL : mt_forced_end_name(r->end);
+}
+
+void mt_vibrated_columns(mt_table *t)
+{
+    mt_table_column(t, "random [g RMS]", "rms_g", MT_ALIGN_POINT);
+    mt_table_column(t, "tones [g]", "sine_g", MT_ALIGN_POINT);
+    mt_table_column(t, "peak [g]", "peak_g", MT_ALIGN_POINT);
+    mt_table_column(t, "random RMS", "rms", MT_ALIGN_POINT);
+    mt_table_column(t, "error at most", "rms_error_at_most", MT_ALIGN_POINT);
+    mt_table_column(t, "tones", "sine", MT_ALIGN_POINT);
+    mt_table_column(t, "peak", "peak", MT_ALIGN_POINT);
+    mt_table_column(t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(t, "no number", "end", MT_ALIGN_LEFT);
+}
+
+void mt_vibrated_row(mt_table *t, const mt_vibrated *v)
+{
+    const mt_vibration_response *const r = v->response;
+    const bool random = v->profile->n_random > 0;
+    const bool tones = v->profile->n_tones > 0;
+    const double none = nan("");
+    mt_table_number(t, random ? mt_vibrated_in_g(v, r->rms) : none, DIGITS);
+    mt_table_number(t, tones ? mt_vibrated_in_g(v, r->sine) : none, DIGITS);
+    mt_table_number(t, mt_vibrated_in_g(v, r->peak), DIGITS);
+    mt_table_number(t, random ? r->rms : none, DIGITS);
+    mt_table_number(t, random ? r->rms_bound : none, BOUND_DIGITS);
+    mt_table_number(t, tones ? r->sine : none, DIGITS);
+    mt_table_number(t, r->peak, DIGITS);
+    mt_table_text(t, mt_vibrated_unit(v));
+    mt_table_text(t, end_of(r));
+}
+
+void mt_vibrated_tone_columns(mt_table *t)
+{
+    mt_table_column(t, "tone", "tone", MT_ALIGN_LEFT);
+    mt_table_column(t, "at [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(t, "peak [g]", "peak_g", MT_ALIGN_POINT);
+    mt_table_column(t, "peak", "peak", MT_ALIGN_POINT);
+    mt_table_column(t, "more at most", "excess_at_most", MT_ALIGN_POINT);
+    mt_table_column(t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(t, "where", "where", MT_ALIGN_LEFT);
+}
+
+static const char *where(const mt_sine_peak *p)
+{
+    return p->end != MT_FORCED_FINITE ? mt_forced_end_name(p->end)
+           : p->at_edge               ? "end of the range"
+                                      : "within";
+}
+
+void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone)
+{
+    const mt_sine_peak *const p = &v->response->tones[tone];
+    const double value = mt_vibration_respond_tone(v->profile, v->response, tone);
+    mt_table_text(t, v->profile->tones[tone].label);
+    mt_table_number(t, p->omega / TWO_PI, HZ_DIGITS);
+    mt_table_number(t, mt_vibrated_in_g(v, value), DIGITS);
+    mt_table_number(t, value, DIGITS);
+    mt_table_number(t, p->excess, BOUND_DIGITS);
+    mt_table_text(t, mt_vibrated_unit(v));
+    mt_table_text(t, where(p));
+}
+
+void mt_vibrated_rule(const mt_vibration *v, mt_text *out)
+{
+    static const char *const rules[MT_TONES_RULES] = {
+        "the sum of all tones", "the largest tone", "the root of the tones' sum of squares"};
+    mt_text_add(out, "the peak is ");
+    if (v->n_random > 0) {
+        mt_text_addf(out, "%.4g times the RMS", v->sigma);
+        mt_text_add(out, v->n_tones > 0 ? "\nand " : "");
+    }
+    mt_text_add(out, v->n_tones > 0 ? rules[v->rule] : "");
+}
+
+void mt_vibrated_marks(const mt_vibration *v, mt_text *out)
+{
+    mt_text_add(out, v->n_marks > 0 ? "  Of the profile is assumed, or unconfirmed:\n" : "");
+    for (int i = 0; i < v->n_marks; i++) {
+        mt_text_addf(out, "  - %s\n", v->marks[i]);
+    }
+    mt_text_add(out, v->n_marks > 0 ? "\n" : "");
 }

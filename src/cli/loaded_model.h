@@ -5,8 +5,10 @@
 #include "base/text.h"
 #include "cli/args.h"
 #include "inspect/loaded_model.h"
+#include "inspect/response.h"
 #include "io/file.h"
 #include "io/write_json.h"
+#include "report/table.h"
 #include "result/result.h"
 
 /**
@@ -43,5 +45,18 @@ void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out);
  * found), MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
                         char **path, mt_err *err);
+
+/* "the peak is 3 times the RMS and the sum of all tones" */
+void mt_vibrated_rule(const mt_vibration *v, mt_text *out);
+/* Append what is assumed or unconfirmed in the profile; nothing where all is confirmed. */
+void mt_vibrated_marks(const mt_vibration *v, mt_text *out);
+
+/* Columns and row: RMS, largest tones and combined peak, after the caller's own columns. */
+void mt_vibrated_columns(mt_table *t);
+void mt_vibrated_row(mt_table *t, const mt_vibrated *v);
+/* Columns for each tone: frequency in its range of the largest response, and this response. */
+void mt_vibrated_tone_columns(mt_table *t);
+/* The cells of one tone. */
+void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone);
 
 #endif

@@ -64,7 +64,7 @@ static mt_status correlate(mt_mac_view *c, int count, mt_err *err)
     return mt_mac_pair(c->a.n, c->b.n, c->mac, c->pair, &c->mem, err);
 }
 
-/* Modes of one mt_mac_side that the sensors cannot tell apart, and other doubts, as sentences;
+/* Modes of one side that the sensors cannot tell apart, and other doubts, as sentences;
  * emit writes one. */
 typedef void (*emit_note)(void *context, const char *text);
 
@@ -216,7 +216,7 @@ static const mt_field mac_fields[] = {
     MT_F_TEXTS("channels", channels, n_channels,
                "The sensors and directions that both have: there shapes are compared.",
                .flat = true),
-    MT_F_TEXTS("notes", notes, n_notes, "What limits the mt_mac_view, in sentences."),
+    MT_F_TEXTS("notes", notes, n_notes, "What limits the comparison, in sentences."),
 };
 const mt_record mt_mac_record = MT_F_RECORD_OF(mac_fields, NULL, "Two sets of modes.");
 #undef THIS

@@ -3,6 +3,7 @@
 #ifndef PUBLIC_CALLS_H
 #define PUBLIC_CALLS_H
 
+#include "modetune/answers.h"
 #include "modetune/dynamics.h"
 #include "modetune/mechanism.h"
 #include "modetune/model.h"
@@ -240,6 +241,32 @@ static const char *const seen[] = {"pivot"};
 static mt_motion_told told;
 GIVES(mechanism_motion, mt_mechanism_motion(ARG(0, mechanism), ARG(1, &moves), 1, ARG(2, seen),
                                             8, ARG(3, part), ARG(4, &told), ARG(5, &said)))
+/* A question of a model, whose text is given back. */
+#define ASKS(name, options, call)                                   \
+    static mt_status call_model_##name(int null)                    \
+    {                                                               \
+        const mt_##name##_options opt = options;                    \
+        char *out = NULL;                                           \
+        const mt_status rc = call;                                  \
+        mt_string_delete(out);                                      \
+        return (rc == MT_OK) == (out != NULL) ? rc : MT_E_INTERNAL; \
+    }
+#define OPTIONS(...)                    \
+    {                                   \
+        .size = sizeof opt, __VA_ARGS__ \
+    }
+static const char *const shaking[] = {"base.x"};
+static const char *const drives[] = {"pivot=0:0.1:2"};
+ASKS(modes, OPTIONS(.shapes = 1),
+     mt_model_modes(ARG(0, model), ARG(1, &opt), ARG(2, &out), ARG(3, &said)))
+ASKS(mac, OPTIONS(.configuration_a = configuration, .configuration_b = configuration),
+     mt_model_mac(ARG(0, model), ARG(1, model), ARG(2, &opt), ARG(3, &out), ARG(4, &said)))
+ASKS(sensitivity, OPTIONS(.parameters = parameter),
+     mt_model_sensitivity(ARG(0, model), ARG(1, &opt), ARG(2, &out), ARG(3, &said)))
+ASKS(response, OPTIONS(.n_inputs = 1, .inputs = shaking),
+     mt_model_response(ARG(0, model), ARG(1, &opt), ARG(2, &out), ARG(3, &said)))
+ASKS(sweep, OPTIONS(.drives = drives, .n_drives = 1),
+     mt_model_sweep(ARG(0, model), ARG(1, &opt), ARG(2, &out), ARG(3, &said)))
 static mt_status call_study_read(int null)
 {
     mt_study *out = null == 0 ? study : NULL;

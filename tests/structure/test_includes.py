@@ -26,7 +26,7 @@ OPEN = {
     "prove": {"enclosure.h", "box.h", "certify.h", "tolerance.h", "band_count.h"},
 }
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
-PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "profile": "environment", "mechanism": "library", "motion": "library"}
+PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "profile": "environment", "mechanism": "library", "motion": "library", "answers": "library"}
 # <system header> pattern: the rooms that may include it
 DOORS = [
     (re.compile(r"lapacke|cblas|lapack|openblas|(suitesparse/)?cholmod"), {"linalg"}),

@@ -29,17 +29,16 @@ from ._library import (
     PROGRESS, Diagnostic, Error, ErrStruct, Files, SolveOptions, check, encoded, lib, made,
     one_thread, text_made, text_of, version,
 )
+from ._models import Model, PathLike, Value, named, sets_of
 from ._page import Report
 from ._progress import Progress, Silent, teller
 
 if TYPE_CHECKING:
     from .types import Result
 
-__all__ = ["Diagnostic", "Doubt", "Error", "Report", "modes", "report", "solve"]
+__all__ = ["Diagnostic", "Doubt", "Error", "Model", "Report", "modes", "report", "solve"]
 __version__ = version
 
-PathLike = Union[str, "os.PathLike[str]"]
-Value = Union[float, int, str]
 WISH_END = 2  # of mt_stop_request
 MOST_START_S = 1.0  # a thread that has begun by then is waited for as long as it takes
 MOST_SEED = 2**31 - 1
@@ -52,38 +51,6 @@ def __dir__() -> list[str]:
 
 class Doubt(UserWarning):
     """What is hardly meant in a model, said as the command line says it."""
-
-
-def _plain(value: Any) -> Any:
-    """Scalars and arrays of NumPy, which json does not know."""
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    raise TypeError(f"{type(value).__name__} has no place in a model, study or result")
-
-
-def _text(content: Union[str, Mapping[str, Any]]) -> str:
-    """The text of a file."""
-    if isinstance(content, str):
-        return content
-    return json.dumps(content, indent=2, allow_nan=False, default=_plain)
-
-
-def _sets(wanted: Optional[Mapping[str, Value]]) -> list[str]:
-    """NAME=VALUE; numbers to the last bit."""
-    if wanted is None:
-        return []
-    return [f"{name}={value if isinstance(value, str) else repr(float(value))}"
-            for name, value in wanted.items()]
-
-
-def _named(thing: Union[PathLike, Mapping[str, Any]], name: str,
-           files: Optional[Mapping[str, Union[str, Mapping[str, Any]]]]
-           ) -> tuple[bytes, dict[str, str]]:
-    """The path to read, and the files that are given by their texts."""
-    given = {path: _text(content) for path, content in (files or {}).items()}
-    if isinstance(thing, Mapping):
-        return encoded(name), {name: _text(thing), **given}
-    return encoded(os.fsencode(thing)), given
 
 
 class _Search:
@@ -182,9 +149,9 @@ def solve(study: Union[PathLike, Mapping[str, Any]], *,
     seed = None if seed is None else operator.index(seed)
     if seed is not None and not 0 <= seed <= MOST_SEED:
         raise ValueError(f"seed must be from 0 to {MOST_SEED}")
-    path, given = _named(study, "study.json", files)
+    path, given = named(study, "study.json", files)
     count = len(os.sched_getaffinity(0)) if workers is None else workers
-    sets = _sets(set)
+    sets = sets_of(set)
     search = _Search(lambda: _study(path, given, sets, seed), count, teller(progress))
     return json.loads(search.run())
 
@@ -289,8 +256,8 @@ def modes(model: Union[PathLike, Mapping[str, Any]], configuration: Optional[str
 
     Raises Error, and warns (modetune.Doubt) of what is hardly meant.
     """
-    path, given = _named(model, "model.json", None)
-    with Files(given, _sets(set), None) as read, one_thread:
+    path, given = named(model, "model.json", None)
+    with Files(given, sets_of(set), None) as read, one_thread:
         with made("mt_model_read", "mt_model_delete", path, byref(read.options),
                   listed=read.diagnostics) as loaded:
             asked = None if configuration is None else encoded(configuration)
@@ -311,7 +278,7 @@ def _solved_model(answer: c_void_p, path: bytes) -> ContextManager[c_void_p]:
 
 @contextmanager
 def _model(model: Union[PathLike, Mapping[str, Any]]) -> Iterator[c_void_p]:
-    path, given = _named(model, "model.json", None)
+    path, given = named(model, "model.json", None)
     with Files(given, [], None) as read:
         with made("mt_model_read", "mt_model_delete", path, byref(read.options),
                   listed=read.diagnostics) as loaded:
@@ -329,7 +296,7 @@ def report(result: Union[PathLike, Mapping[str, Any]],
     A notebook shows it; `.html` is its text, `.save(path)` writes it. Raises Error where that
     is no result, or no model.
     """
-    path, given = _named(result, "result.json", None)
+    path, given = named(result, "result.json", None)
     with Files(given, [], None) as read, one_thread:
         with made("mt_result_read", "mt_result_delete", path, byref(read.options),
                   listed=read.diagnostics) as answer:

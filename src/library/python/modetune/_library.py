@@ -74,6 +74,48 @@ class SolveOptions(Structure):
     ]
 
 
+TEXTS = POINTER(c_char_p)
+
+
+class ModesOptions(Structure):
+    _fields_ = [
+        ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("n_sets", c_int),
+        ("count", c_int), ("shapes", c_int), ("damped", c_int),
+    ]
+
+
+class MacOptions(Structure):
+    _fields_ = [
+        ("size", c_size_t), ("configuration_a", c_char_p), ("configuration_b", c_char_p),
+        ("sets", TEXTS), ("n_sets", c_int), ("count", c_int),
+    ]
+
+
+class SensitivityOptions(Structure):
+    _fields_ = [
+        ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("n_sets", c_int),
+        ("count", c_int), ("parameters", c_char_p),
+    ]
+
+
+class ResponseOptions(Structure):
+    _fields_ = [
+        ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("n_sets", c_int),
+        ("n_inputs", c_int), ("inputs", TEXTS), ("outputs", TEXTS), ("n_outputs", c_int),
+        ("points", c_int), ("from", c_char_p), ("to", c_char_p), ("log", c_int),
+        ("keep", c_int), ("direct", c_int), ("poles", c_int), ("parameters", c_char_p),
+        ("vibration", c_void_p),
+    ]
+
+
+class SweepOptions(Structure):
+    _fields_ = [
+        ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("drives", TEXTS),
+        ("hold", c_char_p), ("n_sets", c_int), ("n_drives", c_int), ("frequencies", c_int),
+        ("count", c_int),
+    ]
+
+
 ERR = POINTER(ErrStruct)
 OUT = POINTER(c_void_p)
 NEW = (c_void_p,)
@@ -104,6 +146,13 @@ FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "mt_model_parameter_unit": TEXT_OF_ITEM,
     "mt_model_parameter_follows": (c_int, c_void_p, c_int),
     "mt_model_configuration_name": TEXT_OF_ITEM,
+    "mt_model_modes": (c_int, c_void_p, POINTER(ModesOptions), OUT, ERR),
+    "mt_model_mac": (c_int, c_void_p, c_void_p, POINTER(MacOptions), OUT, ERR),
+    "mt_model_sensitivity": (c_int, c_void_p, POINTER(SensitivityOptions), OUT, ERR),
+    "mt_model_response": (c_int, c_void_p, POINTER(ResponseOptions), OUT, ERR),
+    "mt_model_sweep": (c_int, c_void_p, POINTER(SweepOptions), OUT, ERR),
+    "mt_vibration_read": READ,
+    "mt_vibration_delete": DELETE,
     "mt_mechanism_new": (c_int, c_void_p, c_char_p, c_int, POINTER(c_char_p), OUT, ERR),
     "mt_mechanism_delete": DELETE,
     "mt_mechanism_value": (c_double, c_void_p, c_char_p),
@@ -248,7 +297,7 @@ def made(function: str, delete: str, *arguments: Any,
         getattr(lib, delete)(handle)
 
 
-def text_made(function: str, *owners: Optional[c_void_p]) -> str:
+def text_made(function: str, *owners: Any) -> str:
     """The text that a function of C makes of its owners."""
     with made(function, "mt_string_delete", *owners) as text:
         return ctypes.cast(text, c_char_p).value.decode()  # type: ignore[union-attr]
