@@ -776,7 +776,7 @@ static mt_status list_configuration_warnings(const known *k, int n_inputs, const
     }
     for (int i = 0; i < list->n; i++) {
         list->items[i].configuration = m->configurations[c].name.s;
-        list->items[i].file = m->path;
+        list->items[i].file = mt_model_file(m, list->items[i].addr);
     }
     mt_model_lint(m, c, value, false, list);
     mt_warning_accept(list, 0, &m->accepted);

@@ -15,6 +15,7 @@
 #include "io/file.h"
 #include "io/json.h"
 #include "io/write_json.h"
+#include "model/expand.h"
 #include "problem/problem.h"
 #include "report/summary.h"
 #include "report/table.h"
@@ -377,7 +378,8 @@ static mt_status load_document(int kind, mt_json *doc, const char *path,
     mt_aircraft_list aircraft = {0};
     mt_status rc = MT_OK;
     if (kind == KIND_MODEL) {
-        rc = mt_model_from_json(doc, path, &s->model, err);
+        rc = mt_model_expand(doc, path, opt, NULL, err);
+        rc = rc == MT_OK ? mt_model_from_json(doc, path, &s->model, err) : rc;
         mt_json_report(doc, path, messages);
         rc = messages->lines.failed ? mt_fail_memory(err) : rc;
     }

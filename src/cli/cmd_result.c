@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "model/expand.h"
 #include "report/explain.h"
 #include "report/table.h"
 #include "result/diff.h"
@@ -196,16 +197,24 @@ static mt_status substitute(const mt_recommendation *r, const mt_result_run *run
         (void)mt_err_in(err, rc, "%s", path);
         goto done;
     }
-    rc = find_places(r, run, doc, path, list, &n, err);
+    const char *bytes = file->bytes;
+    size_t length = file->length;
+    if (mt_json_member(doc, MT_JSON_ROOT, "include") != MT_NO_ADDR) {
+        /* its parameters stand in several files: the whole model is one that needs no other */
+        rc = mt_model_expand(doc, path, NULL, NULL, err);
+        rc = rc == MT_E_INPUT ? mt_json_status(doc, path, err) : rc;
+        bytes = mt_json_text(doc, &length);
+    }
+    rc = rc == MT_OK ? find_places(r, run, doc, path, list, &n, err) : rc;
     size_t at = 0;
     for (int i = 0; rc == MT_OK && i < n; i++) {
         char number[MT_JSON_NUMBER_SIZE];
-        mt_text_add_n(out, file->bytes + at, list[i].begin - at);
+        mt_text_add_n(out, bytes + at, list[i].begin - at);
         mt_text_add(out, mt_json_format_shortest(list[i].value, number));
         at = list[i].end;
     }
     if (rc == MT_OK) {
-        mt_text_add_n(out, file->bytes + at, file->length - at);
+        mt_text_add_n(out, bytes + at, length - at);
     }
 done:
     mt_json_delete(doc);
@@ -265,7 +274,8 @@ const mt_command mt_command_apply = {
     .summary = "the model with the recommended values",
     .details =
         "Prints the model file with the recommended values; the rest of its text stays as it "
-        "is. The model is found from the result, or its folder, and must be the one that was "
+        "is, but a model that includes other files is written out whole. The model is found "
+        "from the result, or its folder, and must be the one that was "
         "solved (same SHA-256) unless --model names it. A result.json whose neighbours were "
         "changed or belong to another run is refused; a copy by itself is read.",
     .run = run_apply,

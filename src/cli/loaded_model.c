@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
+#include "model/expand.h"
 #include "model/lint.h"
 #include "model/model.h"
 #include "model/values.h"
@@ -137,13 +138,63 @@ void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
 /* --model takes a file as it is, with a warning where it is not what was solved; without it the
  * model is looked for (result/folder.h). */
 
+/* The digest of a file that was read for the result; NULL: none was of that name. */
+static const char *digest_of(const mt_result *result, const char *name)
+{
+    for (int i = 0; i < result->run.n_inputs; i++) {
+        if (strcmp(result->run.inputs[i].file, name) == 0) {
+            return result->run.inputs[i].sha256;
+        }
+    }
+    return NULL;
+}
+
+/* A file that the model includes and that is another one now is an error; where the model was
+ * given by its name (`warns`), a warning. */
+static mt_status check_included(const mt_result *result, const mt_file *file, const char *path,
+                                bool warns, mt_err *err)
+{
+    mt_json *doc = NULL;
+    mt_arena mem = {.first = NULL};
+    mt_included_list files = {.mem = &mem};
+    if (strstr(file->bytes, "\"include\"") == NULL) {
+        return MT_OK;
+    }
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    rc = rc == MT_OK ? mt_model_expand(doc, path, NULL, &files, err) : rc;
+    for (int i = 0; rc == MT_OK && i < files.n; i++) {
+        char *const name = mt_file_join(result->model.file, files.items[i].name);
+        const char *const was = name == NULL ? NULL : digest_of(result, name);
+        const bool same = was != NULL && strcmp(was, files.items[i].sha256) == 0;
+        if (name == NULL) {
+            rc = mt_fail_memory(err);
+        } else if (!same && warns) {
+            mt_terminal_warning("%s is not what was solved: it has changed since", name);
+        } else if (!same) {
+            rc = mt_fail(err, MT_E_INPUT,
+                         "%s: included file \"%s\" has changed since it was "
+                         "solved",
+                         path, files.items[i].name);
+        }
+        free(name);
+    }
+    if (rc == MT_E_INPUT && doc != NULL && mt_json_diags(doc)->errors > 0) {
+        rc = mt_json_status(doc, path, err);
+    }
+    mt_json_delete(doc);
+    mt_arena_free(&mem);
+    return rc;
+}
+
 mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
                         char **path, mt_err *err)
 {
     const char *const given = args->value[MT_OPT_MODEL];
     const char *const root = args->value[MT_OPT_ROOT];
     if (given == NULL) {
-        return mt_result_find_model(args->operands[0], result, root, file, path, err);
+        const mt_status rc =
+            mt_result_find_model(args->operands[0], result, root, file, path, err);
+        return rc == MT_OK ? check_included(result, file, *path, false, err) : rc;
     }
     MT_TRY(mt_file_read(given, root, MT_JSON_MAX_BYTES, file, err));
     const char *const hash = mt_result_model_sha256(result);
@@ -151,7 +202,7 @@ mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *f
         mt_terminal_warning("%s is not what was solved: it has changed since", given);
     }
     *path = mt_file_join("x", given);
-    return *path == NULL ? mt_fail_memory(err) : MT_OK;
+    return *path == NULL ? mt_fail_memory(err) : check_included(result, file, *path, true, err);
 }
 
 /* Vibrations under a profile as tables and text. */

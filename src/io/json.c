@@ -496,6 +496,24 @@ void mt_json_scan(const char *text, size_t length, mt_json_spots *out, mt_diags 
 /* LARGE: a text whose items are worth giving back to the system. */
 enum { CJSON_NUMBER_MOST = 63, CJSON_TYPE = 0xFF, LARGE = 1 << 20 };
 
+/* What a document was made of: documents with texts of their own, the first of them in the
+ * place of the file that it was read from; the origins of all values, then those of addresses
+ * that are no value's, for problems (2 n, 2 n + 1 ...). */
+typedef struct note {
+    const char *text;
+    int under; /* of what it was made from; -1: nothing */
+} note;
+
+typedef struct made {
+    int n_docs;
+    mt_json **docs;
+    const char **files;
+    int n_origins;
+    mt_json_origin *origins;
+    int n_notes;
+    note *notes;
+} made;
+
 /* cJSON holds names, values and the tree. This struct adds the text, the place of each value in
  * it, and the map from addresses to items (the map back is the item's valueint, otherwise
  * unused). */
@@ -508,6 +526,7 @@ struct mt_json {
     cJSON **items;     /* [spots.n]; NULL where the text is not JSON */
     cJSON *tree;       /* the whole document without duplicates */
     cJSON *duplicates; /* members left out, as the object has their name already */
+    made *made;        /* NULL: the text is a file's */
 };
 
 /* The item of a value's address; NULL for other addresses. */
@@ -714,6 +733,9 @@ void mt_json_delete(mt_json *doc)
         return;
     }
     const bool large = doc->length >= LARGE;
+    for (int i = 0; doc->made != NULL && i < doc->made->n_docs; i++) {
+        mt_json_delete(doc->made->docs[i]);
+    }
     cJSON_Delete(doc->tree);
     cJSON_Delete(doc->duplicates);
     mt_arena_free(&doc->mem);
@@ -903,22 +925,105 @@ static size_t offset_of(const mt_json *doc, mt_addr addr)
     return spot == NULL ? 0 : name ? spot->name : spot->start;
 }
 
+/* Where an address stands: in a document with a text of its own. */
+typedef struct origin {
+    const mt_json *doc;
+    const char *file; /* NULL: the one that the reader was asked for */
+    mt_addr addr;
+    int order; /* of the document among those of one file */
+    int note;
+} origin;
+
+static origin origin_of(const mt_json *doc, mt_addr addr)
+{
+    const made *const of = doc->made;
+    const int n = doc->spots.n;
+    if (of == NULL || addr < 0) {
+        return (origin){.doc = doc, .addr = addr, .note = -1};
+    }
+    const bool name = addr >= n && addr < 2 * n;
+    const mt_json_origin *const at = &of->origins[name            ? addr - n
+                                                  : addr >= 2 * n ? addr - n
+                                                                  : addr];
+    return (origin){.doc = of->docs[at->doc],
+                    .file = of->files[at->doc],
+                    .addr = name ? mt_json_name_addr(of->docs[at->doc], at->addr) : at->addr,
+                    .order = at->doc,
+                    .note = at->note};
+}
+
+const char *mt_json_file(const mt_json *doc, mt_addr addr)
+{
+    return origin_of(doc, addr).file;
+}
+
+const char *mt_json_text(const mt_json *doc, size_t *length)
+{
+    *length = doc->length;
+    return doc->text;
+}
+
 void mt_json_locate(const mt_json *doc, mt_addr addr, int *line, int *column)
 {
+    const origin of = origin_of(doc, addr);
     cursor at = {0, 1, 1};
-    advance(doc, &at, offset_of(doc, addr));
+    advance(of.doc, &at, offset_of(of.doc, of.addr));
     *line = at.line;
     *column = at.column;
 }
 
+/* An address in the order of the text that it stands in. */
+typedef struct entry {
+    int order;        /* of the document */
+    long long offset; /* -1: no place */
+    int index;
+} entry;
+
+static int compare_entries(const void *a, const void *b)
+{
+    const entry *const x = a;
+    const entry *const y = b;
+    if (x->order != y->order) {
+        return x->order < y->order ? -1 : 1;
+    }
+    if (x->offset != y->offset) {
+        return x->offset < y->offset ? -1 : 1;
+    }
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+static entry entry_of(const mt_json *doc, mt_addr addr, int index)
+{
+    const origin of = origin_of(doc, addr);
+    return (entry){.order = of.order,
+                   .offset = addr == MT_NO_ADDR ? -1 : (long long)offset_of(of.doc, of.addr),
+                   .index = index};
+}
+
 void mt_json_locates(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns)
 {
-    cursor at = {0, 1, 1};
-    for (int i = 0; i < n; i++) {
-        advance(doc, &at, offset_of(doc, addrs[i]));
-        lines[i] = at.line;
-        columns[i] = at.column;
+    entry *const sorted = doc->made == NULL ? NULL : calloc((size_t)n + 1, sizeof *sorted);
+    for (int i = 0; i < n && sorted != NULL; i++) {
+        sorted[i] = entry_of(doc, addrs[i], i);
     }
+    if (sorted != NULL) {
+        qsort(sorted, (size_t)n, sizeof *sorted, compare_entries);
+    }
+    cursor at = {0, 1, 1};
+    const mt_json *in = doc;
+    for (int i = 0; i < n; i++) {
+        const int k = sorted == NULL ? i : sorted[i].index;
+        const origin of = origin_of(doc, addrs[k]);
+        const size_t offset = offset_of(of.doc, of.addr);
+        if (of.doc != in || offset < at.offset) {
+            at = (cursor){0, 1, 1};
+            in = of.doc;
+        }
+        advance(of.doc, &at, offset);
+        lines[k] = at.line;
+        columns[k] = at.column;
+    }
+    free(sorted);
 }
 
 /* A member name as a pointer writes it: decoded where the values stand, else as in the
@@ -986,7 +1091,8 @@ mt_addr mt_json_find(const mt_json *doc, const char *pointer, size_t length)
     return at;
 }
 
-void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
+/* Of a document with a text of its own. */
+static void add_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
 {
     const mt_json_spot *const spots = doc->spots.items;
     mt_addr path[MT_JSON_MAX_DEPTH + 1];
@@ -1012,53 +1118,86 @@ void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
     }
 }
 
-typedef struct entry {
-    long long offset; /* -1: no place */
-    int index;
-} entry;
-
-static int compare_entries(const void *a, const void *b)
+void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
 {
-    const entry *const x = a;
-    const entry *const y = b;
-    if (x->offset != y->offset) {
-        return x->offset < y->offset ? -1 : 1;
+    const origin of = origin_of(doc, addr);
+    add_pointer(of.doc, of.addr, out);
+}
+
+/* What the notes say of a value, from the last that was made of it to the first. */
+static void add_notes(const mt_json *doc, int last, mt_text *out)
+{
+    for (int i = last; i >= 0; i = doc->made->notes[i].under) {
+        mt_text_add(out, " (");
+        mt_text_add(out, doc->made->notes[i].text);
+        mt_text_add(out, ")");
     }
-    return (x->index > y->index) - (x->index < y->index);
 }
 
 static void report_one(const mt_json *doc, const char *file, const mt_diag *diag, cursor *at,
                        mt_diagnostics *out)
 {
     mt_text pointer = {0};
+    mt_text said = {0};
     mt_diagnostic_place place = {.file = file};
     if (diag->addr != MT_NO_ADDR) {
-        advance(doc, at, offset_of(doc, diag->addr));
+        const origin of = origin_of(doc, diag->addr);
+        const size_t offset = offset_of(of.doc, of.addr);
+        if (doc->made != NULL) {
+            *at = (cursor){0, 1, 1};
+        }
+        advance(of.doc, at, offset);
+        place.file = of.file == NULL ? file : of.file;
         place.line = at->line;
         place.column = at->column;
-        mt_json_pointer(doc, diag->addr, &pointer);
+        add_pointer(of.doc, of.addr, &pointer);
         place.pointer = pointer.s;
+        mt_text_add(&said, diag->text);
+        add_notes(doc, of.note, &said);
     }
-    mt_diagnostics_add(out, diag->severity, &place, diag->text);
-    out->lines.failed = out->lines.failed || pointer.failed;
+    mt_diagnostics_add(out, diag->severity, &place, said.s == NULL ? diag->text : said.s);
+    out->lines.failed = out->lines.failed || pointer.failed || said.failed;
     mt_text_free(&pointer);
+    mt_text_free(&said);
+}
+
+/* True where a problem of a copy is one of what it was copied from, too, or has been told word
+ * for word of the same value. */
+static bool is_repeated(const mt_json *doc, int index)
+{
+    const mt_diag *const d = &doc->diags.items[index];
+    const origin at = origin_of(doc, d->addr);
+    bool told = false;
+    for (int i = 0; i < doc->diags.count && doc->made != NULL && !told; i++) {
+        const mt_diag *const other = &doc->diags.items[i];
+        const origin of = origin_of(doc, other->addr);
+        told = i != index && d->addr != MT_NO_ADDR && of.doc == at.doc && of.addr == at.addr &&
+               other->severity == d->severity &&
+               ((of.note < 0 && at.note >= 0) ||
+                (i < index && of.note == at.note && strcmp(other->text, d->text) == 0));
+    }
+    return told;
 }
 
 void mt_json_report(const mt_json *doc, const char *file, mt_diagnostics *out)
 {
     const mt_diags *const diags = &doc->diags;
-    entry order[MT_DIAG_LIMIT] = {{0, 0}};
+    entry order[MT_DIAG_LIMIT] = {{0, 0, 0}};
     int n = 0;
-    for (; n < diags->count && n < MT_DIAG_LIMIT; n++) {
-        const mt_addr addr = diags->items[n].addr;
-        order[n] = (entry){addr == MT_NO_ADDR ? -1 : (long long)offset_of(doc, addr), n};
+    int again = 0;
+    for (int i = 0; i < diags->count && i < MT_DIAG_LIMIT; i++) {
+        if (is_repeated(doc, i)) {
+            again++;
+        } else {
+            order[n++] = entry_of(doc, diags->items[i].addr, i);
+        }
     }
     qsort(order, (size_t)n, sizeof order[0], compare_entries);
     cursor at = {0, 1, 1};
     for (int i = 0; i < n; i++) {
         report_one(doc, file, &diags->items[order[i].index], &at, out);
     }
-    const int more = diags->errors + diags->warnings - n;
+    const int more = diags->errors + diags->warnings - n - again;
     if (more > 0) {
         mt_diagnostics_leave_out(out, file, more);
     }
@@ -1083,10 +1222,200 @@ mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err)
         line = strchr(line, '\n') + 1;
     }
     const int length = (int)strcspn(line, "\n");
-    const int more = diags->errors - 1;
+    int again = 0;
+    for (int i = 0; i < diags->count; i++) {
+        again += diags->items[i].severity == MT_SEVERITY_ERROR && is_repeated(doc, i) ? 1 : 0;
+    }
+    const int more = diags->errors - again - 1;
     const mt_status rc =
         more == 0 ? mt_fail(err, MT_E_INPUT, "%.*s", length, line)
                   : mt_fail(err, MT_E_INPUT, "%.*s (and %d more)", length, line, more);
     mt_diagnostics_free(&said);
     return rc;
+}
+
+/* A document made of others. */
+
+/* Add what the parts consist of to the lists: documents with texts of their own. first: where
+ * those of each part begin, in documents and in notes. */
+static void take_documents(mt_json *whole, const mt_json_parts *parts, int *first_doc,
+                           int *first_note)
+{
+    made *const to = whole->made;
+    for (int k = 0; k < parts->n_notes; k++) {
+        to->notes[to->n_notes++] =
+            (note){.text = mt_arena_strdup(&whole->mem, parts->notes[k]), .under = -1};
+    }
+    for (int i = 0; i < parts->n_docs; i++) {
+        const made *const of = parts->docs[i]->made;
+        first_doc[i] = to->n_docs;
+        first_note[i] = to->n_notes;
+        for (int k = 0; of != NULL && k < of->n_notes; k++) {
+            const note *const n = &of->notes[k];
+            to->notes[first_note[i] + k] =
+                (note){.text = mt_arena_strdup(&whole->mem, n->text),
+                       .under = n->under < 0 ? -1 : n->under + first_note[i]};
+        }
+        to->n_notes += of == NULL ? 0 : of->n_notes;
+        for (int k = 0; k < (of == NULL ? 1 : of->n_docs); k++) {
+            const char *const own = of == NULL ? NULL : of->files[k];
+            const char *const file = own == NULL ? parts->files[i] : own;
+            to->docs[to->n_docs] = of == NULL ? parts->docs[i] : of->docs[k];
+            to->files[to->n_docs++] = file == NULL ? NULL : mt_arena_strdup(&whole->mem, file);
+        }
+    }
+}
+
+/* The note that says the first text, then what was known; of neighbours the same one. */
+static int note_upon(made *to, int upper, int under)
+{
+    if (upper < 0 || under < 0) {
+        return upper < 0 ? under : upper;
+    }
+    const note *const last = &to->notes[to->n_notes - 1];
+    if (last->text == to->notes[upper].text && last->under == under) {
+        return to->n_notes - 1;
+    }
+    to->notes[to->n_notes] = (note){.text = to->notes[upper].text, .under = under};
+    return to->n_notes++;
+}
+
+static mt_json_origin compose(made *to, const mt_json_parts *parts, mt_json_origin at,
+                              const int *first_doc, const int *first_note)
+{
+    const origin of = origin_of(parts->docs[at.doc], at.addr);
+    const int under = of.note < 0 ? -1 : of.note + first_note[at.doc];
+    return (mt_json_origin){.doc = first_doc[at.doc] + of.order,
+                            .addr = of.addr,
+                            .note = note_upon(to, at.note, under)};
+}
+
+/* Problems of the parts are problems of the whole, at addresses beyond those of its values. */
+static void take_problems(mt_json *whole, const mt_json_parts *parts, const int *first_doc,
+                          const int *first_note)
+{
+    made *const to = whole->made;
+    for (int i = 0; i < parts->n_docs; i++) {
+        const mt_diags *const from = &parts->docs[i]->diags;
+        for (int k = 0; k < from->count; k++) {
+            const mt_diag *const d = &from->items[k];
+            mt_addr addr = d->addr;
+            if (addr != MT_NO_ADDR) {
+                to->origins[to->n_origins] = compose(
+                    to, parts, (mt_json_origin){i, addr, parts->by[i]}, first_doc, first_note);
+                addr = whole->spots.n + to->n_origins++;
+            }
+            void (*const say)(mt_diags *, mt_addr, const char *, ...) =
+                d->severity == MT_SEVERITY_WARNING ? mt_diag_warning
+                : d->structural                    ? mt_diag_structure
+                                                   : mt_diag_error;
+            say(&whole->diags, addr, "%s", d->text);
+        }
+    }
+}
+
+/* Room for all: origins and notes of the values, and those of problems. */
+static mt_status make_lists(mt_json *whole, const mt_json_parts *parts, int **first,
+                            mt_err *err)
+{
+    size_t docs = 0;
+    size_t notes = (size_t)parts->n_notes + (size_t)parts->n_origins + 1;
+    size_t problems = 0;
+    for (int i = 0; i < parts->n_docs; i++) {
+        const made *const of = parts->docs[i]->made;
+        docs += of == NULL ? 1 : (size_t)of->n_docs;
+        notes += of == NULL ? 0 : (size_t)of->n_notes;
+        problems += (size_t)parts->docs[i]->diags.count;
+    }
+    made *const to = mt_arena_alloc(&whole->mem, 1, sizeof *to);
+    *first = mt_arena_int(&whole->mem, 2 * (size_t)parts->n_docs);
+    if (to == NULL || *first == NULL) {
+        return mt_arena_check(&whole->mem, err);
+    }
+    /* NOLINTBEGIN(bugprone-sizeof-expression): pointers are what is meant */
+    to->docs = mt_arena_alloc(&whole->mem, docs, sizeof *to->docs);
+    to->files = mt_arena_alloc(&whole->mem, docs, sizeof *to->files);
+    /* NOLINTEND(bugprone-sizeof-expression) */
+    to->notes = mt_arena_alloc(&whole->mem, notes + problems, sizeof *to->notes);
+    to->origins =
+        mt_arena_alloc(&whole->mem, (size_t)parts->n_origins + problems, sizeof *to->origins);
+    whole->made = to;
+    return mt_arena_check(&whole->mem, err);
+}
+
+/* Members given twice in the new text, at their places in the old ones. */
+static void note_duplicates(mt_json *whole)
+{
+    for (const cJSON *m = whole->duplicates->child; m != NULL; m = m->next) {
+        mt_diag_error(&whole->diags, mt_json_name_addr(whole, m->valueint),
+                      "member \"%s\" is given twice", m->string);
+    }
+}
+
+static mt_status make_of(mt_json *whole, const mt_json_parts *parts, mt_err *err)
+{
+    int *first = NULL;
+    if (whole->spots.n != parts->n_origins) {
+        return mt_fail(err, MT_E_INTERNAL, "%d values with %d origins", whole->spots.n,
+                       parts->n_origins);
+    }
+    MT_TRY(make_lists(whole, parts, &first, err));
+    made *const to = whole->made;
+    take_documents(whole, parts, first, first + parts->n_docs);
+    for (int i = 0; i < parts->n_origins; i++) {
+        to->origins[to->n_origins++] =
+            compose(to, parts, parts->origins[i], first, first + parts->n_docs);
+    }
+    whole->diags = mt_diags_default(&whole->mem);
+    whole->diags.document = whole;
+    whole->diags.lookup = lookup_member;
+    take_problems(whole, parts, first, first + parts->n_docs);
+    note_duplicates(whole);
+    return mt_arena_check(&whole->mem, err);
+}
+
+/* The struct goes to another address. */
+static void move(mt_json *to, const mt_json *from)
+{
+    *to = *from;
+    to->diags.mem = &to->mem;
+    to->diags.document = to;
+}
+
+mt_status mt_json_become(mt_json *doc, const char *text, size_t length,
+                         const mt_json_parts *parts, mt_err *err)
+{
+    mt_json *whole = NULL;
+    mt_json *const old = calloc(1, sizeof *old);
+    mt_status rc = old == NULL ? mt_fail_memory(err) : mt_json_parse(text, length, &whole, err);
+    const bool again = rc == MT_E_INPUT;
+    rc = again ? mt_fail(err, MT_E_INTERNAL, "a text that was made is not JSON") : rc;
+    rc = rc == MT_OK ? make_of(whole, parts, err) : rc;
+    for (int i = 1; i < parts->n_docs; i++) {
+        made *const of = parts->docs[i]->made;
+        if (rc == MT_OK && of != NULL) {
+            of->n_docs = 0; /* the whole has them now */
+        }
+        if (rc != MT_OK || of != NULL) {
+            mt_json_delete(parts->docs[i]);
+        }
+    }
+    if (rc != MT_OK) {
+        if (whole != NULL) {
+            whole->made = NULL;
+        }
+        mt_json_delete(whole);
+        free(old);
+        return rc;
+    }
+    move(old, doc);
+    move(doc, whole);
+    free(whole);
+    if (old->made == NULL) {
+        doc->made->docs[0] = old;
+    } else {
+        old->made->n_docs = 0;
+        mt_json_delete(old);
+    }
+    return MT_OK;
 }

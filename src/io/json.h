@@ -126,6 +126,39 @@ mt_items mt_json_items(const mt_json *doc, mt_addr value);
 /* Go on to the next item; false where there is none. */
 bool mt_items_next(mt_items *items);
 
+/*
+ * A document that was made of others: its text was written by a program, and every value
+ * remembers which value of which document it stands for. Places, pointers and diagnostics are
+ * those of the originals.
+ */
+/* Where a value comes from. */
+typedef struct mt_json_origin {
+    int doc;      /* index of a document */
+    mt_addr addr; /* of a value or a name there */
+    int note;     /* index of what messages add about it, in parentheses; -1: nothing */
+} mt_json_origin;
+
+typedef struct mt_json_parts {
+    int n_docs; /* docs[0] is the document itself */
+    mt_json **docs;
+    const char *const *files;      /* [n_docs]: what they are called; that of docs[0] is NULL */
+    const int *by;                 /* [n_docs]: the note about all of a document; -1: none */
+    int n_origins;                 /* the number of values of the text */
+    const mt_json_origin *origins; /* in document order */
+    int n_notes;
+    const char *const *notes; /* "copy 3 of \"mount\", line 12" */
+} mt_json_parts;
+
+/* Turn a document into one of this text, made of `parts`: problems noted in these documents are
+ * the problems of this one; doc stays the caller's. The other documents become its own (also on
+ * failure). Fails: MT_E_MEMORY; MT_E_INTERNAL where the origins do not fit the text. */
+mt_status mt_json_become(mt_json *doc, const char *text, size_t length,
+                         const mt_json_parts *parts, mt_err *err);
+/* The file of an address of a document made of several; NULL: the document's own. */
+const char *mt_json_file(const mt_json *doc, mt_addr addr);
+/* The text of a document: length bytes and a NUL, alive as long as it is. */
+const char *mt_json_text(const mt_json *doc, size_t *length);
+
 /* Conversion of addresses to places and JSON pointers, and diagnostics with these. */
 
 /* The line and column of an address. */

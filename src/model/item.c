@@ -80,7 +80,8 @@ static mt_num *read_nums(mt_model_reader *mr, mt_addr value, const list_form *fo
     mt_num *const nums = mt_reader_room(&mr->r, &items, sizeof *nums);
     while (mt_items_next(&items)) {
         nums[*n] = mt_read_num(mr, items.at, form->possible, form->unit);
-        if (nums[*n] != MT_ABSENT) {
+        const bool here = mt_json_file(mr->r.doc, items.at) == NULL;
+        if (nums[*n] != MT_ABSENT && here) { /* an included file has units of its own */
             mt_reader_check_kind(&mr->r, items.at, &mr->m->nums[nums[*n]].expr, form->unit);
         }
         ++*n;

@@ -142,6 +142,12 @@ extern const mt_key_table mt_configuration_keys;
 extern const mt_key_table mt_drive_keys;
 extern const mt_key_table mt_hold_keys;
 extern const mt_key_table mt_damping_keys;
+extern const mt_key_table mt_include_keys;
+extern const mt_key_table mt_rotate_keys;
+extern const mt_key_table mt_repeat_keys;
+extern const mt_key_table mt_polar_keys;
+extern const mt_key_table mt_linear_keys;
+extern const mt_key_table mt_mirror_keys;
 
 /* A number or expression of the model's parameters, of this row of what is possible, a bare
  * number in this unit (NULL: SI); MT_ABSENT where absent or wrong. */

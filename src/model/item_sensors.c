@@ -83,7 +83,10 @@ enum { ROTATIONS = 8 | 16 | 32, PLANAR = 1 | 2 | 32 };
 /* A link without a part: the sensor sits on it at `fraction`. */
 static bool on_whole_link(mt_resolve *f, mt_sensor *s)
 {
-    const int link = mt_model_find_link(f->m, s->on_name.s);
+    bool found = false; /* tells absent (-1) from link 0, which has the same value */
+    const char *const on = s->on_name.s == NULL ? "" : s->on_name.s;
+    const int part = mt_names_find(&f->m->tables->bodies, on, strlen(on), &found);
+    const int link = found && part < 0 ? -1 - part : MT_ABSENT;
     if (link == MT_ABSENT) {
         return false;
     }

@@ -23,7 +23,7 @@ mt_warning *mt_lint_addr(mt_lint *j, mt_warning *warning, mt_addr addr, const ch
     }
     warning->addr = addr;
     warning->pointer = pointer;
-    warning->file = j->model->path;
+    warning->file = mt_model_file(j->model, addr);
     warning->configuration = j->model->configurations[j->configuration].name.s;
     if (!mt_model_locate(j->model, addr, &warning->line, &warning->column)) {
         warning->line = 0;

@@ -227,15 +227,6 @@ int mt_model_find_mode(const mt_model *model, const char *name)
     return find_name(&model->tables->modes, name);
 }
 
-/* Bodies and links share a table, where link i has the value -1 - i. `found` tells absent (-1)
- * from link 0, which has the same value. */
-int mt_model_find_link(const mt_model *model, const char *name)
-{
-    bool found = false;
-    const int i = mt_names_find(&model->tables->bodies, name, strlen(name), &found);
-    return found && i < 0 ? -1 - i : MT_ABSENT;
-}
-
 int mt_model_find_joint(const mt_model *model, const char *name)
 {
     return find_name(&model->tables->joints, name);
@@ -251,7 +242,8 @@ int mt_model_find_sensor(const mt_model *model, const char *name)
     return find_name(&model->tables->sensors, name);
 }
 
-bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column)
+/* NULL: it is not known. */
+static const mt_place *place_at(const mt_model *model, mt_addr addr)
 {
     int first = 0;
     int last = model->n_places - 1;
@@ -259,9 +251,7 @@ bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column
         const int middle = first + (last - first) / 2;
         const mt_place *const p = &model->places[middle];
         if (p->addr == addr) {
-            *line = p->line;
-            *column = p->column;
-            return true;
+            return p;
         }
         if (p->addr < addr) {
             first = middle + 1;
@@ -269,7 +259,23 @@ bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column
             last = middle - 1;
         }
     }
-    return false;
+    return NULL;
+}
+
+bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column)
+{
+    const mt_place *const p = place_at(model, addr);
+    if (p != NULL) {
+        *line = p->line;
+        *column = p->column;
+    }
+    return p != NULL;
+}
+
+const char *mt_model_file(const mt_model *model, mt_addr addr)
+{
+    const mt_place *const p = place_at(model, addr);
+    return p == NULL || p->file == NULL ? model->path : p->file;
 }
 
 bool mt_model_present(const mt_presence *in, int configuration)

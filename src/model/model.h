@@ -416,7 +416,14 @@ typedef struct mt_place {
     mt_addr addr;
     int line;
     int column;
+    const char *file; /* an included one; NULL: the model's own */
 } mt_place;
+
+/* A file that was included. */
+typedef struct mt_included {
+    const char *name; /* as seen from the folder of the model */
+    const char *sha256;
+} mt_included;
 
 /* A parameter whose value differs from that in the file (model/values.h). */
 typedef struct mt_setting {
@@ -453,6 +460,8 @@ typedef struct mt_model {
     /* by parameter; the model is as if its file had these values */
     MT_LIST_OF(mt_setting, settings);
     const char *sha256; /* of the file's bytes, hexadecimal; NULL: not read from a file */
+    int n_included;     /* files that it is made of, too */
+    const mt_included *included;
     /* of every number and of other items with a location, sorted by address; 0: not read from a
      * file */
     int n_places;
@@ -485,11 +494,12 @@ int mt_model_find_configuration(const mt_model *model, const char *name);
 int mt_model_find_mode(const mt_model *model, const char *name);
 int mt_model_find_joint(const mt_model *model, const char *name);
 int mt_model_find_spring(const mt_model *model, const char *name);
-int mt_model_find_link(const mt_model *model, const char *name);
 int mt_model_find_sensor(const mt_model *model, const char *name);
-/* Line and column in model->path of an address (of a number, a position, a name, a drive);
+/* Line and column in mt_model_file of an address (of a number, a position, a name, a drive);
  * false where it is not known. */
 bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column);
+/* The file of an address: model->path, or one that is included. */
+const char *mt_model_file(const mt_model *model, mt_addr addr);
 /* True where the item is present in the configuration. */
 bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);

@@ -13,6 +13,7 @@
 #include "io/file.h"
 #include "io/json.h"
 #include "io/reader.h"
+#include "model/expand.h"
 #include "model/item.h"
 #include "model/lint.h"
 #include "model/model.h"
@@ -391,6 +392,11 @@ static const mt_key MODEL[] = {
     {.name = "units", .type = MT_KEY_OBJECT, .read = read_file_units, .of = &units_keys},
     MT_M_COUNT("dimension", true, dimension, 2, 3, "2: plane, coordinates x and y; 3: space.",
                .schema = "\"type\": \"integer\", \"enum\": [2, 3]"),
+    MT_M_LIST_OF("include", mt_include_keys,
+                 "Sub-assemblies from other model files, each with a place and a prefix."),
+    MT_M_LIST_OF("repeat", mt_repeat_keys,
+                 "Copies of items around an axis, along a line or behind a mirror; each may "
+                 "copy what those before it made, and what is included."),
     MT_I_VECTOR("gravity_m_per_s2", gravity, has_gravity, GRAVITY,
                 "Acceleration of gravity in all configurations that do not give their own "
                 "[m/s^2]. Absent: none.",
@@ -485,7 +491,9 @@ const mt_key_table *const *mt_model_key_tables(int *n)
         &mt_joint_keys,   &mt_spring_keys,  &mt_damper_keys,
         &mt_sensor_keys,  &mt_mode_keys,    &mt_configuration_keys,
         &mt_drive_keys,   &mt_hold_keys,    &mt_load_keys,
-        &units_keys,      &mt_damping_keys,
+        &units_keys,      &mt_damping_keys, &mt_include_keys,
+        &mt_rotate_keys,  &mt_repeat_keys,  &mt_polar_keys,
+        &mt_linear_keys,  &mt_mirror_keys,
     };
     *n = MT_COUNT(tables);
     return tables;
@@ -576,8 +584,11 @@ static void note_places(mt_model_reader *mr)
     qsort(list.addrs, (size_t)list.n, sizeof *list.addrs, compare_addrs);
     mt_json_locates(mr->r.doc, list.n, list.addrs, lines, columns);
     for (int i = 0; i < list.n; i++) {
-        m->places[i] =
-            (mt_place){.addr = list.addrs[i], .line = lines[i], .column = columns[i]};
+        const char *const in = mt_json_file(mr->r.doc, list.addrs[i]);
+        m->places[i] = (mt_place){.addr = list.addrs[i],
+                                  .line = lines[i],
+                                  .column = columns[i],
+                                  .file = in == NULL ? NULL : mt_arena_strdup(&m->mem, in)};
     }
     m->n_places = list.n;
     mt_arena_rewind(&m->mem, mark);
@@ -620,12 +631,21 @@ static void write_settings(mt_model_reader *mr)
     }
 }
 
-static mt_status from_json(mt_json *doc, const char *file, int n, const mt_setting *settings,
-                           mt_model **out, mt_err *err)
+/* The settings are n; opt: from where files are included. */
+static mt_status from_json(mt_json *doc, const char *file, const mt_io_options *opt, int n,
+                           const mt_setting *settings, mt_model **out, mt_err *err)
 {
     mt_model *m = NULL;
     *out = NULL;
     MT_TRY(mt_model_new(&m, err));
+    mt_included_list files = {.mem = &m->mem};
+    const mt_status expanded = mt_model_expand(doc, file, opt, &files, err);
+    if (expanded != MT_OK) {
+        mt_model_delete(m);
+        return expanded == MT_E_INPUT ? mt_json_status(doc, file, err) : expanded;
+    }
+    m->n_included = files.n;
+    m->included = files.items;
     mt_model_reader mr = {.r = {.doc = doc,
                                 .diags = mt_json_diags(doc),
                                 .mem = &m->mem,
@@ -653,7 +673,7 @@ static mt_status from_json(mt_json *doc, const char *file, int n, const mt_setti
 
 mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err)
 {
-    return from_json(doc, file, 0, NULL, out, err);
+    return from_json(doc, file, NULL, 0, NULL, out, err);
 }
 
 static int by_parameter(const void *a, const void *b)
@@ -680,9 +700,10 @@ static mt_status read_settings(mt_model *m, const mt_overrides *asked, mt_settin
 
 /* Read the file again with the overridden values; *doc is then another document. */
 static mt_status read_with_settings(const mt_file *file, const char *path,
-                                    const mt_overrides *asked, mt_json **doc, mt_model **model,
+                                    const mt_io_options *opt, mt_json **doc, mt_model **model,
                                     mt_err *err)
 {
+    const mt_overrides *const asked = opt->asked;
     mt_model *const plain = *model;
     mt_setting *settings = NULL;
     mt_status rc = read_settings(plain, asked, &settings, err);
@@ -690,7 +711,7 @@ static mt_status read_with_settings(const mt_file *file, const char *path,
         mt_json_delete(*doc);
         rc = mt_json_parse(file->bytes, file->length, doc, err);
         *model = NULL;
-        rc = rc == MT_OK ? from_json(*doc, path, asked->n_sets, settings, model, err) : rc;
+        rc = rc == MT_OK ? from_json(*doc, path, opt, asked->n_sets, settings, model, err) : rc;
         mt_model_delete(plain);
     }
     return rc == MT_OK ? rc : mt_err_in(err, rc, "--set");
@@ -708,13 +729,13 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
                          limit, &file, err));
     mt_status rc = mt_json_parse(file.bytes, file.length, &doc, err);
     if (rc == MT_OK) {
-        rc = mt_model_from_json(doc, path, out, err);
+        rc = from_json(doc, path, opt, 0, NULL, out, err);
     } else if (rc == MT_E_INPUT) {
         rc = mt_json_status(doc, path, err);
     }
     const mt_overrides *const asked = opt == NULL ? NULL : opt->asked;
     if (rc == MT_OK && *out != NULL && asked != NULL && asked->n_sets > 0) {
-        rc = read_with_settings(&file, path, asked, &doc, out, err);
+        rc = read_with_settings(&file, path, opt, &doc, out, err);
     }
     if (rc == MT_OK && *out != NULL) {
         (*out)->sha256 = mt_arena_strdup(&(*out)->mem, file.sha256);

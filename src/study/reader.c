@@ -55,6 +55,22 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
     }
 }
 
+/* Files that the model includes are read for the study, too. */
+static void note_included(mt_study_reader *s, const char *path, const mt_model *model)
+{
+    for (int i = 0; i < model->n_included; i++) {
+        char *const joined = mt_file_join(path, model->included[i].name);
+        const char *const name =
+            joined == NULL ? NULL : mt_arena_strdup(&s->study->mem, joined);
+        free(joined);
+        if (name == NULL) {
+            mt_arena_fail(&s->study->mem);
+            return;
+        }
+        mt_read_study_note_input(s, name, model->included[i].sha256);
+    }
+}
+
 /* Load a model; overrides apply to the study's own only. */
 static mt_model *load_model(mt_study_reader *s, mt_name path)
 {
@@ -72,6 +88,7 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     const mt_status rc = mt_model_load(joined, &opt, &model, s->model_messages, &why);
     if (rc == MT_OK) {
         mt_read_study_note_input(s, path.s, model->sha256);
+        note_included(s, path.s, model);
     } else if (rc == MT_E_USAGE) { /* of what is asked for: of no file */
         s->failed = rc;
         s->why = why;

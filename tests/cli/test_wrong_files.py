@@ -78,7 +78,8 @@ ANY = {("measured_mode", "shape"), ("published", "value"), ("published", "at_lea
        ("damper", "at"), ("sensor", "at"), ("load", "at"), ("link", "from"), ("link", "to"), ("load", "force_n"), ("load", "moment_n_m"),
        ("spring", "preload_n"), ("spring", "preload_n_m"), ("spring", "free_angle_rad"), ("spring", "stiffness_n_per_m"),
        ("spring", "stiffness_n_m_per_rad"), ("damper", "damping_n_s_per_m"), ("damper", "damping_n_m_s_per_rad"), ("link", "stiffness_n_m_per_rad"),
-       ("configuration", "gravity_m_per_s2"), ("axes", "angles_rad")}
+       ("configuration", "gravity_m_per_s2"), ("axes", "angles_rad"), ("include", "at"), ("include", "parameters"), ("rotate", "angle_rad"), ("polar", "angle_rad"), ("polar", "about"),
+       ("linear", "step"), ("mirror", "about")}
 NEGATIVE = [(set_to(-1), "error", "must not be negative")]
 NO_DIRECTION = [(each(set_to(0)), "error", "no direction|length zero|length 0")]
 # By member, and where its definition matters by both: changes, with what is told of them.
@@ -120,7 +121,7 @@ WRONG = {
     "radius_of_gyration_m": NEGATIVE, "free_length_m": NEGATIVE, "area_m2": [(set_to(-1), "error", "must be above 0|must not be negative")],
     "second_moment_m4": POSITIVE, "second_moment_other_m4": POSITIVE, "torsion_constant_m4": NEGATIVE, "coefficient": POSITIVE, "coefficient_other": POSITIVE,
     "poissons_ratio": [(set_to(0.6), "error", "not above 0.5")], "fraction": [(set_to(1.1), "error", "within 0 and 1")], "axis": NO_DIRECTION,
-    "axis_b": NO_DIRECTION, ("axes", "x"): NO_DIRECTION, ("axes", "y"): NO_DIRECTION, ("axes", "z"): NO_DIRECTION, "hinge_axis": NO_DIRECTION,
+    "axis_b": NO_DIRECTION, "normal": NO_DIRECTION, ("axes", "x"): NO_DIRECTION, ("axes", "y"): NO_DIRECTION, ("axes", "z"): NO_DIRECTION, "hinge_axis": NO_DIRECTION,
     ("joint", "ratio"): [(set_to(0), "error", "must not be 0")],
     ("compliance", "stiffness_n_per_m"): [(soft(0), "error", "must be above 0")], ("compliance", "stiffness_n_m_per_rad"): [(soft(0), "error", "must be above 0")],
     ("compliance", "damping_n_s_per_m"): [(soft(-1), "error", "must not be negative")],
@@ -226,6 +227,8 @@ def anchored(document, kind, folder):
     """With the files that it names found from anywhere."""
     out = copy.deepcopy(document)
     holders = [(out, "aircraft")] if kind != "aircraft" else []
+    if kind == "model":
+        holders += [(i, "file") for i in out.get("include", [])]
     if kind == "study":
         holders += [(out, "model")] + [(r, "model") for r in out.get("references", {}).values()]
         holders += [(m, "file") for m in out.get("measurements", {}).values()]

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`like` with every override: a random chain of configurations against the same ones written out in full.
+"""What a file says once and means several times. `like` with every override: a random chain of configurations against the same ones written out in
+full. `repeat` and `include`: repeats.py.
 
 The command line is that of every campaign (tests/support/campaign.py).
 """
@@ -13,6 +14,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import campaign  # noqa: E402
+import repeats  # noqa: E402
 
 WHOLE = ("gravity_m_per_s2", "drive", "damping")  # members that an override replaces as a whole
 COMMANDS = (("modes", "--damped", "--count", "all"), ("info",), ("response", "--input", "s2.x", "--from", "0.5", "--to", "30", "--points", "5"))
@@ -107,14 +109,20 @@ def drops(like, full, name):
 
 
 class Likes(campaign.Generator):
-    script, cases = "tests/hunt/likes.py", "chains"
+    script, cases = "tests/hunt/likes.py", "models"
+    kinds = ("like", "repeat")
 
     def make(self, seed, kind, index):
-        rng = campaign.draw(seed, "like", index)
+        rng = campaign.draw(seed, kind, index)
+        if kind == "repeat":
+            return campaign.Case(kind, repeats.case(rng), rng)
         like, full = case(rng)
         return campaign.Case(kind, {"like": like, "full": full}, rng)
 
     def judge(self, case, folder, tally):
+        if case.kind == "repeat":
+            yield from repeats.judge(case.document, folder)
+            return
         like, full = case.document["like"], case.document["full"]
         for command, a, b in zip(COMMANDS, answers(folder, like), answers(folder, full)):
             for (name, code, one), (_, other_code, other) in zip(a, b):
@@ -129,6 +137,9 @@ class Likes(campaign.Generator):
 
     def smaller(self, document):
         """Nodes go that both have."""
+        if "alone" in document:
+            yield from super().smaller(document)
+            return
         like, full = document["like"], document["full"]
         common = {path for path, _, _ in campaign.nodes(full)}
         for path in sorted((p for p, _, _ in campaign.nodes(like) if p in common), key=len):

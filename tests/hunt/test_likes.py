@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`like` in the suite: chains of configurations of a fixed seed, and faults that must be found."""
+"""`like`, `repeat` and `include` in the suite: models of a fixed seed, and faults that must be found."""
 import tempfile
 import unittest
 from pathlib import Path
@@ -31,7 +31,10 @@ def item_lost(full):
 
 class Likes(unittest.TestCase):
     def test_chains(self):
-        hold(self, likes.Likes(), "suite", likes.Likes().todo([""], COUNT))
+        hold(self, likes.Likes(), "suite", likes.Likes().todo(["like"], COUNT))
+
+    def test_repeats(self):
+        hold(self, likes.Likes(), "suite", likes.Likes().todo(["repeat"], 10 * COUNT))
 
     @unittest.skipIf(INSTRUMENTED, "judges the hunt, not the program")
     def test_faults_are_found(self):
@@ -40,7 +43,7 @@ class Likes(unittest.TestCase):
                 self.assertTrue(any(self._found(plant, index) for index in range(3)))
 
     def _found(self, plant, index):
-        case = likes.Likes().make("faults", "", index)
+        case = likes.Likes().make("faults", "like", index)
         with tempfile.TemporaryDirectory() as folder:
             return plant(case.document["full"]) and list(likes.Likes().judge(case, Path(folder), Tally()))
 

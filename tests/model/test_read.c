@@ -23,6 +23,17 @@ static int find_body(const mt_model *m, const char *name)
     return MT_ABSENT;
 }
 
+/* Index of a link; MT_ABSENT. */
+static int find_link(const mt_model *m, const char *name)
+{
+    for (int i = 0; i < m->n_links; i++) {
+        if (strcmp(m->links[i].name.s, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
 /* The value of a number that is a constant; a NaN where it is not, so that checks fail. */
 static double constant(const mt_model *m, mt_num num)
 {
@@ -59,12 +70,12 @@ static void model__items_of_a_plane_model_are_read(mt_test *t)
     CHECK_INT(t, crank->inertia[1], MT_ABSENT);
     CHECK(t, m->bodies[find_body(m, "bob")].point_mass);
     CHECK_INT(t, m->bodies[1].centre.point, 2);
-    const mt_link *const beam = &m->links[mt_model_find_link(m, "beam")];
+    const mt_link *const beam = &m->links[find_link(m, "beam")];
     CHECK_INT(t, beam->n_stiffness, 2);
     CHECK_INT(t, beam->n_element_inertia, 1);
     CHECK_INT(t, beam->elements, 3);
     CHECK_INT(t, find_body(m, "beam"), MT_ABSENT);
-    CHECK_INT(t, mt_model_find_link(m, "crank"), MT_ABSENT);
+    CHECK_INT(t, find_link(m, "crank"), MT_ABSENT);
     const mt_section *const tube = &m->links[1].section;
     CHECK_INT(t, tube->shape, MT_SECTION_TUBE);
     CHECK_NEAR(t, constant(m, tube->diameter), 0.02, 0.0);
