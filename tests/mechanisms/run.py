@@ -26,6 +26,7 @@ ACCURACY = Decimal("1e-9")  # of frequencies
 SLOPES = Decimal("1e-6")    # of derivatives, in frequency per parameter
 MODEST = Decimal("1e-6")    # relative, of a bound where nothing cancels
 SHAPES = Decimal("1e-7")    # of shapes, in their largest entry
+ABOUT = "0.3,-0.2,0.1"      # point [m] that the ground turns about
 STEP = Decimal("1e-20")     # relative, of a parameter; the oracle has eighty digits
 LAST_DIGIT = Decimal(2) ** -52
 APART = Decimal("1e-4")     # relative; closer frequencies have no derivative of their own
@@ -176,12 +177,32 @@ class Judgement:
                 yield "shapes", f"mode {i + 1} moves {worst} by {given[worst]}, exact {sign * exact[worst]:.12g}"
                 return
 
+    def grounded(self):
+        """May a bar or rod have a part of its mass on the ground?"""
+        return any("density_kg_per_m3" in s for s in self.model.get("springs", [])) or any("mass_kg" in j for j in self.model.get("joints", []))
+
+    def effective(self, answer):
+        """Effective masses of modes that stand alone, and of all together."""
+        if self.grounded():
+            return
+        momenta, values = self.modes.momenta([Decimal(x) for x in ABOUT.split(",")]), self.modes.values
+        for row in answer.said["effective_mass"]:
+            total, momentum = momenta[row["direction"]]
+            exact = [statics.dot(u, momentum) ** 2 for u in self.modes.shapes]
+            if abs(number(row["sum"]) - sum(exact)) > SHAPES * total:
+                yield "effective", f"effective masses along {row['direction']} sum up to {row['sum']}, exact {float(sum(exact))}"
+                return
+            for i, (given, own) in enumerate(zip(row["effective_mass"], exact)):
+                alone = not self.modes.zero[i] and all(abs(values[i] - x) > APART * max(abs(values[i]), abs(x)) for j, x in enumerate(values) if j != i)
+                if alone and abs(number(given) - own) > SHAPES * total:
+                    yield "effective", f"mode {i + 1} has an effective mass of {given} along {row['direction']}, exact {float(own)}"
+                    return
+
     def rest(self):
         """Where the centre of mass comes to rest."""
         exact = self.modes.centre()
-        if exact is None or any("density_kg_per_m3" in s for s in self.model.get("springs", [])) \
-                or any("mass_kg" in j for j in self.model.get("joints", [])):
-            return  # a bar or rod may have a part of its mass on the ground
+        if exact is None or self.grounded():
+            return
         answer = Answer(self.folder, "rest", self.model, "info")
         if answer.code:
             yield "exit", f"info: exit code {answer.code}: {answer.words[-300:]}"
@@ -225,7 +246,7 @@ class Judgement:
 
     def findings(self):
         """(check, sentence)."""
-        answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes")
+        answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes", "--effective-mass", "--about", ABOUT)
         found = list(self.agree(answer))
         yield from found
         if found:
@@ -242,6 +263,7 @@ class Judgement:
                     yield name if check in ("counts", "frequencies", "refused") else check, text
         if not self.modes.dead_centre:
             yield from self.shapes(answer)
+            yield from self.effective(answer) if not answer.code else ()
             yield from self.rest()
             yield from self.slopes()
             yield from self.damping()

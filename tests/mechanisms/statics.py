@@ -433,6 +433,29 @@ class Modes:
                     out[f"{name}.r{'xyz'[k]}"] = dot(row(u, (k + 2) % 3), row(q, (k + 1) % 3))
         return out
 
+    def momenta(self, about):
+        """{"x": (r' M r, M r), ...}: r moves all bodies by 1 along an axis, or by 1 rad about one through a point."""
+        q, o, out = self.state.q, self.problem.oracle, {}
+        for name in ("x", "y", "rz") if o.dim == 2 else ("x", "y", "z", "rx", "ry", "rz"):
+            axis, r = "xyz".index(name[-1]), [Decimal(0)] * self.frame.n
+            for body in o.bodies.values():
+                at, k, m = body.first, (axis + 1) % 3, (axis + 2) % 3
+                if len(name) == 1:
+                    r[at + axis] = Decimal(1)
+                    continue
+                r[at + k], r[at + m] = about[m] - q[at + m], q[at + k] - about[k]
+                if body.turns and o.dim == 2:
+                    r[at + 2], r[at + 3] = -q[at + 3], q[at + 2]
+                elif body.turns:  # R' = e^ R
+                    for i in range(3):
+                        r[at + 3 + 3 * k + i], r[at + 3 + 3 * m + i] = -q[at + 3 + 3 * m + i], q[at + 3 + 3 * k + i]
+            momentum = [Decimal(0)] * self.frame.n
+            for (i, j), x in o.mass.items():
+                momentum[i] += x * r[j]
+                momentum[j] += x * r[i] if i != j else 0
+            out[name] = dot(r, momentum), momentum
+        return out
+
     def centre(self):
         """Of all masses, at rest."""
         q, weights = self.state.q, self.problem.oracle.weights

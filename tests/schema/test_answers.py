@@ -33,7 +33,7 @@ LINES = {
     "examples": [[]],
     "modes": [
         ["tests/models/pendulum.json", "--shapes"],
-        ["tests/models/massless.json"],
+        ["tests/models/massless.json", "--effective-mass"],
         ["tests/models/apart.json"],
         ["tests/models/damped_linkage.json", "--damped"],
         ["problems/stick.json", "-c", "installed", "--shapes"],
