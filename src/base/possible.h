@@ -35,9 +35,10 @@ typedef enum mt_possible_id {
     MT_POSSIBLE_POINT,   /* coordinates of what a joint or spring holds */
     MT_POSSIBLE_AXIS,
     MT_POSSIBLE_GRAVITY,
-    MT_POSSIBLE_WHOLE, /* a whole number: its limits are those of mt_reader_count */
-    MT_POSSIBLE_SHARE, /* a required MAC or damping ratio: above 0, at most 1 */
-    MT_POSSIBLE_PROOF, /* seconds of a proof */
+    MT_POSSIBLE_WHOLE,        /* a whole number: its limits are those of mt_reader_count */
+    MT_POSSIBLE_SHARE,        /* a required MAC or damping ratio: above 0, at most 1 */
+    MT_POSSIBLE_ENERGY_SHARE, /* a share of a mode's energy [%] */
+    MT_POSSIBLE_PROOF,        /* seconds of a proof */
     MT_POSSIBLE_WEIGHT_SENSITIVITY, /* factor of weights */
     MT_POSSIBLE_MET,                /* percent within which a goal is met */
     MT_POSSIBLE_TOLERANCE,          /* percent of manufacturing */

@@ -355,6 +355,11 @@ static void hold_goal(held_file *h, const mt_study *study, int index)
     if (g->static_limit != NULL && g->static_limit->output.s != NULL) {
         about = g->static_limit->output.s;
     }
+    if (g->energy != NULL) {
+        const bool moves = g->energy->body_name.s != NULL;
+        about = mt_arena_printf(&h->mem, "%s, %s \"%s\"", about, moves ? "body" : "spring",
+                                moves ? g->energy->body_name.s : g->energy->spring_name.s);
+    }
     item->value = g->equals;
     item->lower = g->at_least;
     item->upper = g->at_most;

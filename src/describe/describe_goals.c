@@ -117,7 +117,9 @@ static const char *about_text(const mt_requirement *d, mt_arena *mem)
     }
     return d->goal->response_limit != NULL
                ? mt_describe_response_limit(d->goal->response_limit, mem)
-               : mt_arena_printf(mem, "the %s of mode %d", d->ops->number, d->mode);
+           : d->mode > 0 || d->ops->subject == NULL
+               ? mt_arena_printf(mem, "the %s of mode %d", d->ops->number, d->mode)
+               : d->ops->subject(d, mt_arena_printf(mem, "the %s", d->ops->number), mem);
 }
 
 /* Text of the worst value and its position. */

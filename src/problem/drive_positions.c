@@ -63,9 +63,23 @@ static bool same_response_limit(const mt_response_limit *a, const mt_response_li
            a->profile == b->profile && a->quantity == b->quantity;
 }
 
+/* True where both are of the same energy of the same body or spring. */
+static bool same_energy(const mt_requirement *a, const mt_requirement *b)
+{
+    const mt_energy_part *const x = a->energy;
+    const mt_energy_part *const y = b->energy;
+    if (x == NULL || y == NULL) {
+        return x == y;
+    }
+    return x->kind == y->kind && x->first == y->first && x->count == y->count &&
+           x->direction == y->direction && x->axes == y->axes &&
+           a->goal->energy->about.point == b->goal->energy->about.point;
+}
+
 bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement *b)
 {
-    const bool own = a->goal_index == b->goal_index && a->asked == b->asked;
+    const bool own =
+        a->goal_index == b->goal_index && a->asked == b->asked && a->direction == b->direction;
     return own ||
            (a->ops == b->ops && a->mode == b->mode && a->named < 0 && b->named < 0 &&
             a->of.mode == b->of.mode && a->of.named < 0 && b->of.named < 0 &&
@@ -74,7 +88,8 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
             is_equal(a->equals, b->equals) && is_equal(a->goal->at_least, b->goal->at_least) &&
             is_equal(a->goal->at_most, b->goal->at_most) &&
             same_response_limit(a->goal->response_limit, b->goal->response_limit) &&
-            is_text(a->shape.reference, b->shape.reference) && a->shape.mode == b->shape.mode);
+            same_energy(a, b) && is_text(a->shape.reference, b->shape.reference) &&
+            a->shape.mode == b->shape.mode);
 }
 
 /* True where a value is limited in at least two positions of one drive, so that the limit also

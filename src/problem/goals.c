@@ -13,6 +13,9 @@
  *     r = sqrt(w) (sign u - s_ref),   u = s / |s|,   sign = sign(s . s_ref)
  *     dr = sqrt(w) sign (ds - u (u . ds)) / |s|
  * "mac": MAC of the mode's shape at the sensors with that of a reference.
+ * "energy": a share of the mode's energy [%]; of the modes of one frequency their sum. Where
+ *   the mode with most of it is meant, q is the largest over all modes, with a kink where two
+ *   have as much.
  *
  * Goals of two modes, at f and f_of:
  * "ratio": f / f_of, its rows in the logarithm,
@@ -32,6 +35,7 @@
 #include <string.h>
 
 #include "analysis/damping.h"
+#include "analysis/energy_share.h"
 #include "analysis/tracking.h"
 #include "linalg/eig_small.h"
 #include "problem/configuration.h"
@@ -564,6 +568,86 @@ const mt_goal_ops mt_goal_mac = {.quantity = MT_QUANTITY_OTHER,
                                  .subject = mac_subject,
                                  .number = "MAC",
                                  .equals = "at"};
+
+/* What is meant of the goal's body or spring: its direction or component; MT_ABSENT: all. */
+static int energy_direction(const mt_requirement *d)
+{
+    const mt_energy_goal *const e = d->goal->energy;
+    return e->body_name.s == NULL ? e->component
+           : e->n_directions > 0  ? e->directions[d->direction]
+                                  : MT_ABSENT;
+}
+
+static mt_status compile_energy(mt_problem *p, mt_requirement *d, mt_err *err)
+{
+    const mt_energy_goal *const e = d->goal->energy;
+    const mt_system *const sys = p->views[d->view].original->sys;
+    const bool moves = e->body_name.s != NULL;
+    mt_energy_owners all;
+    mt_energy_part *const part = mt_arena_alloc(&p->mem, 1, sizeof *part);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    MT_TRY(mt_energy_owners_find(sys, &p->mem, &all, err));
+    const mt_energy_owner *const list = moves ? all.bodies : all.springs;
+    const char *const name = moves ? e->body_name.s : e->spring_name.s;
+    const int at = mt_energy_owner_named(moves ? all.n_bodies : all.n_springs, list, name);
+    if (at == MT_ABSENT) {
+        return mt_fail(err, MT_E_INPUT,
+                       "configuration \"%s\": \"%s\" has no stiffness, and so no strain energy",
+                       mt_analysis_configuration(p->views[d->view].original), name);
+    }
+    d->energy = part;
+    return mt_energy_part_init(sys, moves ? MT_ENERGY_MOTION : MT_ENERGY_STRAIN, &list[at],
+                               energy_direction(d), &e->about, &p->mem, part, err);
+}
+
+static mt_status evaluate_energy(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                                 double *slope, mt_err *err)
+{
+    mt_analysis *const a = w->views[d->view].analysis;
+    int at = pos;
+    if (at < 0) {
+        MT_TRY(mt_analysis_most_energy(a, d->energy, &at, err));
+    }
+    if (at < 0) {
+        return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode here",
+                       mt_analysis_configuration(a));
+    }
+    MT_TRY(mt_analysis_energy_share(a, at, d->energy, q, slope, err));
+    *q *= 100.0;
+    for (int k = 0; k < w->p->n && slope != NULL; k++) {
+        slope[k] *= 100.0 * mt_workspace_dx_dt(w, k);
+    }
+    return MT_OK;
+}
+
+static const char *energy_subject(const mt_requirement *d, const char *what, mt_arena *mem)
+{
+    const mt_energy_goal *const e = d->goal->energy;
+    const int direction = energy_direction(d);
+    const bool moves = e->body_name.s != NULL;
+    const char *const along =
+        direction < 0 ? "" : mt_arena_printf(mem, " in %s", mt_energy_directions[direction]);
+    const char *const about =
+        e->point_name.s == NULL ? "" : mt_arena_printf(mem, " about \"%s\"", e->point_name.s);
+    const char *const axes =
+        e->about.axes == MT_ENERGY_AXES_PRINCIPAL ? " of the principal axes"
+        : e->about.axes == MT_ENERGY_AXES_GLOBAL  ? ""
+                                                  : " of the torque roll axis";
+    return along == NULL || about == NULL
+               ? NULL
+               : mt_arena_printf(mem, "%s: %s energy of \"%s\"%s%s%s%s", what,
+                                 moves ? "kinetic" : "strain",
+                                 moves ? e->body_name.s : e->spring_name.s, along, axes, about,
+                                 e->most ? ", in the mode with most of it" : "");
+}
+
+const mt_goal_ops mt_goal_energy = {.quantity = MT_QUANTITY_OTHER,
+                                    .needs_vectors = true,
+                                    .compile = compile_energy,
+                                    .value = evaluate_energy,
+                                    .subject = energy_subject,
+                                    .number = "share of energy",
+                                    .equals = "at"};
 
 #define OPS(id, name, ...) &mt_goal_##name,
 static const mt_goal_ops *const OPERATIONS[] = {MT_GOAL_LIST(OPS)};

@@ -228,6 +228,7 @@ static mt_status add_requirement(mt_problem *p, int goal_index, int configuratio
                           .asked = &g->mode,
                           .named = -1,
                           .of = {.view = -1, .named = -1},
+                          .direction = k,
                           .node = MT_NO_NODE,
                           .equals = g->equals,
                           .size = 1.0};
@@ -282,6 +283,13 @@ static void ask_views(mt_problem *p)
     }
 }
 
+/* Number of requirements of a goal in each configuration: of neighbours of a list of modes, of
+ * directions. */
+static int n_each_of(const mt_goal *g)
+{
+    return g->n_modes > 1 ? g->n_modes - 1 : mt_goal_directions(g);
+}
+
 /* Requirements and configurations of goal i. */
 static mt_status add_goal(mt_problem *p, int i, mt_err *err)
 {
@@ -289,7 +297,7 @@ static mt_status add_goal(mt_problem *p, int i, mt_err *err)
     if (g->n_configurations == 0) {
         MT_TRY(add_requirement(p, i, MT_ABSENT, 0, err));
     }
-    const int n_each = g->n_modes > 1 ? g->n_modes - 1 : 1;
+    const int n_each = n_each_of(g);
     for (int k = 0; k < g->n_configurations; k++) {
         int view = -1;
         MT_TRY(g->avoid != NULL
@@ -307,8 +315,7 @@ static mt_status init_requirements(mt_problem *p, mt_err *err)
     const mt_study *const s = p->study;
     size_t most = 0;
     for (int i = 0; i < s->n_goals; i++) {
-        const size_t each = (size_t)(s->goals[i].n_modes > 1 ? s->goals[i].n_modes - 1 : 1);
-        most += ((size_t)s->goals[i].n_configurations * each) + 1;
+        most += ((size_t)s->goals[i].n_configurations * (size_t)n_each_of(&s->goals[i])) + 1;
     }
     p->requirements = mt_arena_alloc(&p->mem, most, sizeof *p->requirements);
     p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);

@@ -4,6 +4,7 @@
 
 #include "analysis/tracking.h"
 #include "environment/bands.h"
+#include "mechanics/energy_share.h"
 #include "problem/reference.h"
 #include "problem/subproblem.h"
 #include "study/study.h"
@@ -97,9 +98,11 @@ typedef struct mt_requirement {
     struct mt_rest_reading *rest; /* [n_rest] where they are read (goal_static.c); else NULL */
     int n_parts;  /* number of parts, one row each; 0: a single value, one row per limit */
     mt_node node; /* limit: node of the expressions' program */
-    mt_reference_shape shape; /* shape, mac; frequency: without the shape */
-    struct mt_fit *fit;       /* frequency_response (goal_frequency_response.h); else NULL */
-    double equals;            /* target, from the goal or its reference; NaN: limits only */
+    mt_reference_shape shape;     /* shape, mac; frequency: without the shape */
+    int direction;                /* energy: of the goal's; 0 where it has none */
+    const mt_energy_part *energy; /* energy: the part of the mode's; else NULL */
+    struct mt_fit *fit; /* frequency_response (goal_frequency_response.h); else NULL */
+    double equals;      /* target, from the goal or its reference; NaN: limits only */
     /* floor of its value, in its unit: below it the logarithm is continued by a tangent */
     double floor_hz;
     double tolerance; /* relative */

@@ -31,7 +31,8 @@ static inline bool mt_forced_response_given(const mt_workspace *w)
 /* True where d is about a mode, by index or name. */
 static inline bool mt_requirement_is_modal(const mt_requirement *d)
 {
-    return d->view >= 0 && d->goal->response_limit == NULL && d->goal->static_limit == NULL;
+    return d->view >= 0 && d->goal->response_limit == NULL && d->goal->static_limit == NULL &&
+           !mt_goal_is_most(d->goal);
 }
 /* Values (and gradients, where out has arrays for them) of one requirement in its rows, after
  * its configuration has been solved. *value (may be NULL): the limited value (infinite for a

@@ -76,6 +76,17 @@ bool mt_goal_is_limit(const mt_goal *goal)
     return goal->response_limit != NULL && MT_HAS(goal->at_most) && !MT_HAS(goal->at_least);
 }
 
+bool mt_goal_is_most(const mt_goal *goal)
+{
+    return goal->energy != NULL && goal->energy->most;
+}
+
+int mt_goal_directions(const mt_goal *goal)
+{
+    return goal->energy != NULL && goal->energy->n_directions > 1 ? goal->energy->n_directions
+                                                                  : 1;
+}
+
 bool mt_study_has_bands(const mt_study *study)
 {
     for (int g = 0; g < study->n_goals; g++) {
@@ -160,7 +171,8 @@ void mt_read_study_goals(mt_study_reader *s, mt_addr list)
         if (type == MT_ABSENT) {
             continue;
         }
-        mt_goal_parts parts = {.goal = new_goal((mt_goal_type)type, items.at)};
+        mt_goal_parts parts = {.goal = new_goal((mt_goal_type)type, items.at),
+                               .energy = mt_energy_goal_default()};
         if (mt_members_read(&s->r, items.at, KINDS[type].members, &parts)) {
             study->goals[study->n_goals++] = parts.goal;
         }
@@ -310,7 +322,10 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     } else if (mt_goal_has(kind, "output")) {
         mt_study_check_response_limit(c, goal);
     }
-    if (mt_goal_has(kind, "mode")) {
+    if (goal->energy != NULL) {
+        mt_study_check_energy(c, goal);
+    }
+    if (mt_goal_has(kind, "mode") && !mt_goal_is_most(goal)) {
         index = mt_check_mode(c, &goal->mode);
     }
     if (mt_goal_has(kind, "of")) {

@@ -4,6 +4,7 @@
 
 #include "io/members.h"
 #include "study/avoid.h"
+#include "study/energy_goal.h"
 #include "study/response_limit.h"
 
 /*
@@ -19,6 +20,7 @@
     X(SHAPE, shape, "", DIFFERENCE)                           \
     X(MAC, mac, "", DIFFERENCE)                               \
     X(DAMPING, damping, "", PART)                             \
+    X(ENERGY, energy, "%", PART)                              \
     X(RESPONSE, response, "", RATIO)                          \
     X(VIBRATION, vibration, "", RATIO)                        \
     X(FREQUENCY_RESPONSE, frequency_response, "", DIFFERENCE) \
@@ -94,7 +96,8 @@ typedef struct mt_goal {
     int reference_mode; /* 1-based; 0: same index as mode */
     mt_expr expression; /* limit */
     const char *expression_text;
-    mt_avoid *avoid; /* of avoid goals, in the study's arena; else NULL */
+    mt_avoid *avoid;        /* of avoid goals, in the study's arena; else NULL */
+    mt_energy_goal *energy; /* of energy goals, in the study's arena; else NULL */
     /* of goals about ports, in the study's arena; else NULL */
     mt_response_limit *response_limit;
     mt_static_limit *static_limit; /* of goals about rest, in the study's arena; else NULL */
@@ -135,6 +138,10 @@ double mt_goal_tolerance(const mt_goal *goal);
 const char *mt_study_goal_unit(const struct mt_study *study, const mt_goal *goal);
 /* True where the goal limits a forced vibration from above. */
 bool mt_goal_is_limit(const mt_goal *goal);
+/* True where a goal means no mode by index or name, but the one that has most. */
+bool mt_goal_is_most(const mt_goal *goal);
+/* Number of requirements in each configuration: of directions, where it has several. */
+int mt_goal_directions(const mt_goal *goal);
 /* True where a goal avoids bands. */
 bool mt_study_has_bands(const struct mt_study *study);
 /* True where a goal limits a forced vibration from above. */
@@ -147,6 +154,7 @@ bool mt_study_has_limits(const struct mt_study *study);
 typedef struct mt_goal_parts {
     mt_goal goal;
     mt_avoid avoid;
+    mt_energy_goal energy;
     mt_response_limit response_limit;
     mt_static_limit static_limit;
 } mt_goal_parts;

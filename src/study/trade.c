@@ -37,7 +37,8 @@ static const mt_key VARY[] = {
         "goal, its rotors' too.",
         .schema =
             "\"type\": \"string\", \"enum\": [\"target_hz\", \"at_least_hz\", \"at_most_hz\", "
-            "\"at_least\", \"target\", \"at_most\", \"equals\", \"margin_percent\"]"),
+            "\"at_least\", \"target\", \"at_most\", \"equals\", \"margin_percent\", "
+            "\"at_least_percent\", \"at_most_percent\"]"),
     MT_M_JUST("values", LIST_OR_OBJECT, true, VARIED,
               "The values, in the unit of what varies: a list, or a span.",
               .schema = "\"if\": {\"type\": \"array\"}, \"then\": {\"minItems\": 1, \"items\": "

@@ -72,6 +72,7 @@ MARGIN = [(set_to(100), "error", "below 100"), (set_to(0.1), "warning", "next to
 TOLERANCE = [(set_to(-1), "error", "must be above 0"), (set_to(60), "warning", "almost anything")]
 ASKED = [(set_to(-1), "error", "must be above 0")]
 SHARE = [(set_to(1.5), "error", "at most 1")]
+PERCENT = [(set_to(101), "error", "from 0 to 100"), (set_to(-1), "error", "from 0 to 100")]
 # Every number can be that of these: a shape's, a published value, a coordinate, a load, a stiffness (which may be negative).
 ANY = {("measured_mode", "shape"), ("published", "value"), ("published", "at_least"), ("published", "at_most"), ("goal_limit", "equals"),
        ("", "parameters"), ("configuration", "parameters"), ("parameter", "value"), ("", "points"), ("body", "centre"), ("joint", "at"), ("spring", "at"),
@@ -93,6 +94,7 @@ WRONG = {
     "target_hz": ASKED, "at_least_hz": ASKED, "at_most_hz": ASKED, "frequency_hz": POSITIVE,
     "at_least": POSITIVE, "at_most": POSITIVE, "target": POSITIVE, "at_least_percent": POSITIVE,
     ("goal_mac", "at_least"): SHARE, ("goal_damping", "at_least"): SHARE, ("goal_damping", "at_most"): SHARE, ("goal_damping", "target"): SHARE,
+    "at_least_percent": PERCENT, "at_most_percent": PERCENT,
     ("goal_limit", "at_least"): [(beyond("at_most", 1), "error", "is not above")],
     ("goal_limit", "at_most"): [(beyond("at_least", -1), "error", "is not above")],
     "bands_hz": [(lambda v: [[v[0][1], v[0][0]], *v[1:]], "error", "is not above"), (lambda v: [[-1, v[0][1]], *v[1:]], "error", "negative")],

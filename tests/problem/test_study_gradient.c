@@ -473,9 +473,39 @@ static void measured_responses__have_exact_gradients(mt_test *t)
     compiled_free(&s);
 }
 
+/* Shares of bodies, a flexible link and springs, by index, name and of the mode with most. */
+static void energies__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "damped_linkage",
+                "'variables': [{'parameter': 'a', 'lower': 0.12, 'upper': 0.18},"
+                " {'parameter': 'k', 'lower': 10, 'upper': 40},"
+                " {'parameter': 'm_c', 'lower': 1, 'upper': 4},"
+                " {'parameter': 'alpha', 'lower': -1, 'upper': 2}],"
+                "'goals': ["
+                "{'type': 'energy', 'configurations': ['all', 'driven'], 'mode': 'most',"
+                " 'body': 'coupler', 'directions': ['x', 'rz'], 'about': 'B',"
+                " 'at_least_percent': 5, 'at_most_percent': 95},"
+                "{'type': 'energy', 'configuration': 'all', 'mode': 3, 'body': 'whip',"
+                " 'at_most_percent': 50},"
+                "{'type': 'energy', 'configuration': 'named', 'mode': 'swing',"
+                " 'spring': 'servo', 'at_least_percent': 10},"
+                "{'type': 'energy', 'configuration': 'all', 'mode': 2, 'spring': 'whip',"
+                " 'at_most_percent': 0}],"
+                "'objective': {'minimise': 'change'}",
+                &s)) {
+        double at[4] = {log(0.155), log(21.0), log(2.2), 0.9 / 3.0};
+        CHECK_INT(t, s.p->n_requirements, 7);
+        CHECK_INT(t, s.p->whole.rows.in.n, (2 * 2 * 2) + 1 + 1 + 1);
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
 MT_TEST_MAIN(MT_TEST(frequencies_of_two_modes__have_exact_gradients),
              MT_TEST(modes_that_meet__have_a_slope_that_parts_them),
              MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
+             MT_TEST(energies__have_exact_gradients),
              MT_TEST(shaken_goals__have_exact_gradients),
              MT_TEST(goals_at_rest__have_exact_gradients),
              MT_TEST(measured_responses__have_exact_gradients),

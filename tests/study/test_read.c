@@ -78,6 +78,26 @@ static void check_variables(mt_test *t, const mt_study *s)
     CHECK_NEAR_ABS(t, v[2].original, 0.0, 0.0);
 }
 
+static void check_energy_goals(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = &s->goals[14];
+    if (CHECK(t, g[0].energy != NULL) && CHECK(t, g[1].energy != NULL)) {
+        CHECK(t, mt_goal_is_most(&g[0]));
+        CHECK_INT(t, g[0].n_configurations, 2);
+        CHECK_INT(t, mt_goal_directions(&g[0]), 2);
+        CHECK_INT(t, g[0].energy->directions[0], 0);
+        CHECK_INT(t, g[0].energy->directions[1], 5);
+        CHECK_STR(t, g[0].energy->body_name.s, "a");
+        CHECK_NEAR(t, g[0].at_least, 3.0, TOL);
+        CHECK_NEAR(t, g[0].at_most, 98.0, TOL);
+        CHECK(t, !mt_goal_is_most(&g[1]));
+        CHECK_INT(t, mt_goal_directions(&g[1]), 1);
+        CHECK_INT(t, g[1].mode.index, 2);
+        CHECK_STR(t, g[1].energy->spring_name.s, "second");
+        CHECK_INT(t, g[1].energy->component, MT_ABSENT);
+    }
+}
+
 static void check_frequency_goals(mt_test *t, const mt_study *s)
 {
     const mt_goal *const g = s->goals;
@@ -273,10 +293,11 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.max_modal_solutions, 90000);
     CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
     CHECK_NEAR(t, s->weight_sensitivity.factor, 4.0, 0.0);
-    if (CHECK_INT(t, s->n_goals, 14)) {
+    if (CHECK_INT(t, s->n_goals, 16)) {
         check_goals_of_two_modes(t, s);
         check_frequency_goals(t, s);
         check_other_goals(t, s);
+        check_energy_goals(t, s);
         check_measured(t, s);
         check_at_rest(t, s);
     }
