@@ -42,10 +42,12 @@ typedef struct mt_modes_options {
     size_t size;               /* sizeof(mt_modes_options) */
     const char *configuration; /* NULL: all */
     const char *const *sets;   /* [n_sets] "NAME=VALUE" */
+    const double *about_m; /* [3] that rotations of the ground are about; NULL: the origin */
     int n_sets;
-    int count;  /* vibration modes, the lowest; 0: 20, INT_MAX: all */
-    int shapes; /* 1: with their shapes */
-    int damped; /* 1: and the modes with damping */
+    int count;          /* vibration modes, the lowest; 0: 20, INT_MAX: all */
+    int shapes;         /* 1: with their shapes */
+    int damped;         /* 1: and the modes with damping */
+    int effective_mass; /* 1: and participation factors and effective masses */
 } mt_modes_options;
 
 /**
@@ -109,6 +111,7 @@ typedef struct mt_response_options {
     int keep;               /* the lowest modes kept, others follow statically; 0: all */
     int direct;             /* 1: without modes, a factor at every frequency */
     int poles;              /* 1: with poles and residues */
+    int state_space;        /* 1: with the matrices A, B, C, D between the ports */
     const char *parameters; /* "A,B" whose influence on the extremes is told; NULL */
     /* profile of the ground, without inputs along its axis; NULL */
     const mt_vibration *vibration;

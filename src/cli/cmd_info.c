@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/file_info.h"
+#include "expr/interpolant.h"
 #include "inspect/at_rest.h"
 #include "io/write_json.h"
 #include "mechanics/info.h"
@@ -487,6 +488,51 @@ static void json_units(mt_json_writer *w, const mt_loaded_model *s)
     mt_json_close(w);
 }
 
+/* A measured curve of the model, which interp() reads. */
+typedef struct curve_row {
+    const char *name;
+    int points;
+    double from;
+    double to;
+} curve_row;
+
+#define THIS curve_row
+static const mt_field curve_fields[] = {
+    MT_F_TEXT("name", name, "Its name."),
+    MT_F_COUNT("points", points, 2, "How many points it has."),
+    MT_F_NUMBER("from", from, "Where it begins, in SI: before that it has no value."),
+    MT_F_NUMBER("to", to, "Where it ends, in SI."),
+};
+static const mt_record curve_record =
+    MT_F_RECORD_OF(curve_fields, "curve", "A measured curve of the model.");
+#undef THIS
+
+static curve_row curve_row_of(const mt_interpolant *curve)
+{
+    return (curve_row){curve->name, curve->n, curve->x[0], curve->x[curve->n - 1]};
+}
+
+static void json_curves(mt_json_writer *w, const mt_model *m)
+{
+    mt_json_open(w, "curves", '[');
+    for (int i = 0; i < m->n_curves; i++) {
+        const curve_row row = curve_row_of(&m->curves[i]);
+        mt_record_put_object(w, NULL, &curve_record, &row, 0, NULL);
+    }
+    mt_json_close(w);
+}
+
+static void write_curves(mt_text *out, const mt_model *m)
+{
+    mt_text_add(out, m->n_curves > 0 ? "Curves\n" : "");
+    for (int i = 0; i < m->n_curves; i++) {
+        const curve_row row = curve_row_of(&m->curves[i]);
+        mt_text_addf(out, "  %s: %d points, from %.10g to %.10g (SI)\n", row.name, row.points,
+                     row.from, row.to);
+    }
+    mt_text_add(out, m->n_curves > 0 ? "\n" : "");
+}
+
 static double info_value(const view *v, mt_node node)
 {
     return node == MT_NO_NODE ? nan("") : mt_linear_value(v->a->lin, node);
@@ -629,6 +675,7 @@ static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
     json_units(w, v->s);
+    json_curves(w, v->s->model);
     mt_json_put_warnings(w, "doubts", &v->warning_list, MT_LEVEL_WARNING);
     mt_json_put_warnings(w, "facts", &v->warning_list, MT_LEVEL_NOTE);
     mt_json_put_number(w, "mass_kg", i->mass_kg);
@@ -847,6 +894,7 @@ static int tell_model(const mt_args *args, mt_text *out)
     }
     if (args->format == MT_FORMAT_TEXT) {
         write_units(out, &s);
+        write_curves(out, s.model);
     }
     for (int i = 0; i < s.n_configurations; i++) {
         view v = {.s = &s, .c = s.configurations[i]};

@@ -113,9 +113,13 @@ mt_status mt_model_modes(const mt_model *model, const mt_modes_options *options,
     MT_NOT_NULL(model, err);
     MT_TRY(MT_OPTIONS_TAKE(options, &own, err));
     MT_TRY(mt_err_in(err, check_count("count", own.count, err), "%s", __func__));
-    const mt_modes_question question = {.count = own.count > 0 ? own.count : MT_MODES_DEFAULT,
-                                        .shapes = own.shapes != 0,
-                                        .damped = own.damped != 0};
+    mt_modes_question question = {.count = own.count > 0 ? own.count : MT_MODES_DEFAULT,
+                                  .shapes = own.shapes != 0,
+                                  .damped = own.damped != 0,
+                                  .effective_mass = own.effective_mass != 0};
+    for (int k = 0; own.about_m != NULL && k < MT_COUNT(question.about_m); k++) {
+        question.about_m[k] = own.about_m[k];
+    }
     mt_status rc = open_model(model, own.configuration, own.n_sets, own.sets, &s, err);
     rc = rc == MT_OK ? put_each(&question, put_modes, own.configuration, &s, &w, err) : rc;
     mt_loaded_model_free(&s);
@@ -238,6 +242,7 @@ mt_status mt_model_response(const mt_model *model, const mt_response_options *op
                                            .keep = own.keep,
                                            .direct = own.direct != 0,
                                            .poles = own.poles != 0,
+                                           .state_space = own.state_space != 0,
                                            .parameters = own.parameters,
                                            .profile = own.vibration};
     MT_TRY(mt_response_question_admit(&question, err));

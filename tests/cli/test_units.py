@@ -255,6 +255,11 @@ class Shown(CliTest):
             with self.subTest(text=text):
                 self.assertIn(why, self.expect(2, "modes", "problems/stick.json", "--set", text).stderr)
 
+    def test_curves_are_told_in_si(self):
+        got = self.json_of("info", str(SOURCE / "tests/models/curve.json"))
+        self.assertEqual(got[0]["curves"], [{"name": "rubber", "points": 4, "from": 0, "to": 0.009}])
+        self.assertIn("rubber: 4 points, from 0 to 0.009 (SI)", self.expect(0, "info", str(SOURCE / "tests/models/curve.json")).stdout)
+
     def test_info_tells_the_conversion(self):
         said = self.expect(0, "info", "problems/stick.json", "-c", "as_is").stdout
         for line in ("Units: length in mm, angle in deg; expressions in SI units\n", "  d: 170 mm = 0.17 m\n",

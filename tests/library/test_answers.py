@@ -56,6 +56,7 @@ def questions(path, held):
     yield "modes", {}, [path]
     yield "modes", {"of": one, "shapes": True, "count": 3}, [path, *named, "--shapes", "--count", "3"]
     yield "modes", {"damped": True, "count": "all"}, [path, "--damped", "--count", "all"]
+    yield "modes", {"effective_mass": True, "about_m": (0.1, 0.2, 0.3)}, [path, "--effective-mass", "--about", "0.1,0.2,0.3"]
     yield "sensitivity", {"count": 2}, [path, "--count", "2"]
     for parameter in parameters[:1]:
         setting = {"set": {parameter: f"1.01*{parameter}"}}

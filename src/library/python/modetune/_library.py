@@ -79,8 +79,9 @@ TEXTS = POINTER(c_char_p)
 
 class ModesOptions(Structure):
     _fields_ = [
-        ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("n_sets", c_int),
-        ("count", c_int), ("shapes", c_int), ("damped", c_int),
+        ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS),
+        ("about_m", POINTER(c_double)), ("n_sets", c_int), ("count", c_int), ("shapes", c_int),
+        ("damped", c_int), ("effective_mass", c_int),
     ]
 
 
@@ -103,8 +104,8 @@ class ResponseOptions(Structure):
         ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("n_sets", c_int),
         ("n_inputs", c_int), ("inputs", TEXTS), ("outputs", TEXTS), ("n_outputs", c_int),
         ("points", c_int), ("from", c_char_p), ("to", c_char_p), ("log", c_int),
-        ("keep", c_int), ("direct", c_int), ("poles", c_int), ("parameters", c_char_p),
-        ("vibration", c_void_p),
+        ("keep", c_int), ("direct", c_int), ("poles", c_int), ("state_space", c_int),
+        ("parameters", c_char_p), ("vibration", c_void_p),
     ]
 
 

@@ -6,7 +6,7 @@ import json
 import os
 import weakref
 from contextlib import ExitStack
-from ctypes import Structure, byref, c_char_p, c_void_p, sizeof
+from ctypes import Structure, byref, c_char_p, c_double, c_void_p, sizeof
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 from ._library import (
@@ -125,10 +125,15 @@ class Model:
     def modes(self, configuration: Optional[str] = None, *,
               set: Optional[Mapping[str, Value]] = None,  # noqa: A002
               count: Union[int, str, None] = None, shapes: bool = False,
-              damped: bool = False) -> CommandModes:
-        """Natural modes, as `modetune modes`; with `shapes`, and modes with damping."""
+              damped: bool = False, effective_mass: bool = False,
+              about_m: Sequence[float] = (0.0, 0.0, 0.0)) -> CommandModes:
+        """Natural modes, as `modetune modes`; with `shapes`, modes with damping, and effective
+        masses, those of rotations about the point about_m.
+        """
+        about = (c_double * 3)(*about_m)
         options = ModesOptions(configuration=_optional(configuration), count=_count(count),
-                               shapes=shapes, damped=damped)
+                               shapes=shapes, damped=damped, effective_mass=effective_mass,
+                               about_m=about)
         _common(options, set)
         return self._ask("modes", options)
 
@@ -164,7 +169,7 @@ class Model:
                  set: Optional[Mapping[str, Value]] = None,  # noqa: A002
                  start_hz: Optional[Value] = None, end_hz: Optional[Value] = None,
                  points: Optional[int] = None, log: bool = False, keep: Optional[int] = None,
-                 direct: bool = False, poles: bool = False,
+                 direct: bool = False, poles: bool = False, state_space: bool = False,
                  parameters: Optional[Sequence[str]] = None,
                  vibration: Union[PathLike, Mapping[str, Any], None] = None,
                  ) -> CommandResponse:
@@ -180,6 +185,7 @@ class Model:
             configuration=_optional(configuration), inputs=_texts(shaking),
             n_inputs=len(shaking), outputs=_texts(seen), n_outputs=len(seen),
             points=points or 0, log=log, keep=keep or 0, direct=direct, poles=poles,
+            state_space=state_space,
             parameters=_optional(None if parameters is None else ",".join(_listed(parameters))),
             **{"from": _number(start_hz), "to": _number(end_hz)})
         _common(options, set)

@@ -120,6 +120,7 @@ class _ModelBodyAlways(TypedDict):
 _ModelBodySometimes = TypedDict("_ModelBodySometimes", {
     "mass_kg": "ModelNumber",
     "inertia_kg_m2": Union["ModelNumber", List["ModelNumber"]],
+    "axes": "ModelAxes",
     "in": List[str],
     "description": str,
     "source": str,
@@ -129,6 +130,20 @@ _ModelBodySometimes = TypedDict("_ModelBodySometimes", {
 
 class ModelBody(_ModelBodyAlways, _ModelBodySometimes):
     """A rigid body, or without inertia_kg_m2 a point mass."""
+
+
+class ModelAxes(TypedDict, total=False):
+    """Axes of its own, right-handed and at right angles, in the reference position: two
+    vectors, x with y or z, or angles; in two dimensions x alone, or one angle. Absent: the
+    drawing's.
+    """
+
+    x: "ModelVector"
+    y: "ModelVector"
+    z: "ModelVector"
+    angles_rad: Union["ModelNumber", List["ModelNumber"]]
+    description: str
+    source: str
 
 
 _ModelLinkAlways = TypedDict("_ModelLinkAlways", {
@@ -202,6 +217,24 @@ class ModelShear(_ModelShearAlways, total=False):
     source: str
 
 
+class ModelCompliance(TypedDict, total=False):
+    """What a joint yields: its first body holds, by springs at the joint's point, a carrier
+    without mass, on which the joint stands. What the joint holds yields where a stiffness is
+    given; what it leaves free stays free. The axes are carried by the first body: the joint's
+    `axis` is the last one (in two dimensions the second), and axes.x, across it, the first; a
+    joint without `axis` has `axes` as a bushing has (absent: the drawing's).
+    """
+
+    axes: "ModelAxes"
+    stiffness_n_per_m: List["ModelNumber"]
+    stiffness_n_m_per_rad: Union["ModelNumber", List["ModelNumber"]]
+    damping_n_s_per_m: List["ModelNumber"]
+    damping_n_m_s_per_rad: Union["ModelNumber", List["ModelNumber"]]
+    loss_factor: Union["ModelNumber", List["ModelNumber"]]
+    description: str
+    source: str
+
+
 class _ModelJointAlways(TypedDict):
     name: str
     type: Literal[
@@ -220,6 +253,7 @@ _ModelJointSometimes = TypedDict("_ModelJointSometimes", {
     "joints": List[str],
     "ratio": "ModelNumber",
     "ratio_m_per_rad": "ModelNumber",
+    "compliance": "ModelCompliance",
     "in": List[str],
     "description": str,
     "source": str,
@@ -239,6 +273,7 @@ _ModelSpringSometimes = TypedDict("_ModelSpringSometimes", {
     "bodies": List[str],
     "joint": str,
     "at": "ModelAt",
+    "axes": "ModelAxes",
     "stiffness_n_per_m": Union["ModelNumber", List["ModelNumber"]],
     "stiffness_n_m_per_rad": Union["ModelNumber", List["ModelNumber"]],
     "in": List[str],
@@ -251,7 +286,7 @@ _ModelSpringSometimes = TypedDict("_ModelSpringSometimes", {
     "youngs_modulus_pa": "ModelNumber",
     "area_m2": "ModelNumber",
     "density_kg_per_m3": "ModelNumber",
-    "loss_factor": "ModelNumber",
+    "loss_factor": Union["ModelNumber", List["ModelNumber"]],
     "stiffness_matrix": List[List["ModelNumber"]],
 }, total=False)
 
@@ -269,6 +304,7 @@ _ModelDamperSometimes = TypedDict("_ModelDamperSometimes", {
     "bodies": List[str],
     "joint": str,
     "at": "ModelAt",
+    "axes": "ModelAxes",
     "damping_n_s_per_m": Union["ModelNumber", List["ModelNumber"]],
     "damping_n_m_s_per_rad": Union["ModelNumber", List["ModelNumber"]],
     "in": List[str],
@@ -713,6 +749,16 @@ class StudyPublishedMac(_StudyPublishedMacAlways, total=False):
     reference_mode: "StudyIndex"
 
 
+class _StudyGoalOfAlways(TypedDict):
+    mode: "StudyMode"
+
+
+class StudyGoalOf(_StudyGoalOfAlways, total=False):
+    """The mode whose frequency a ratio is divided by."""
+
+    configuration: str
+
+
 class _StudyGoalFrequencyAlways(TypedDict):
     type: Literal["frequency"]
     mode: "StudyMode"
@@ -923,6 +969,46 @@ class StudyGoalAvoid(_StudyGoalAvoidAlways, total=False):
     margin_percent: "StudyNumber"
     up_to_hz: "StudyNumber"
     cluster: int
+
+
+class _StudyGoalRatioAlways(TypedDict):
+    type: Literal["ratio"]
+    mode: "StudyMode"
+    of: "StudyGoalOf"
+
+
+class StudyGoalRatio(_StudyGoalRatioAlways, total=False):
+    """The frequency of a mode divided by that of another mode, or of a mode in another
+    configuration: at a target, or within limits.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    target: "StudyNumber"
+    at_least: "StudyNumber"
+    at_most: "StudyNumber"
+    weight: "StudyNumber"
+
+
+class _StudyGoalApartAlways(TypedDict):
+    type: Literal["apart"]
+
+
+class StudyGoalApart(_StudyGoalApartAlways, total=False):
+    """Modes of one configuration whose frequencies are apart."""
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    modes: List["StudyMode"]
+    up_to_mode: int
+    at_least_percent: "StudyNumber"
+    at_least_hz: "StudyNumber"
 
 
 class _StudyAlways(TypedDict):
@@ -1344,7 +1430,7 @@ class _ResultGoalAlways(TypedDict):
     pointer: str
     type: Literal[
         "frequency", "shape", "mac", "damping", "response", "vibration", "frequency_response",
-        "static", "limit", "avoid"
+        "static", "limit", "avoid", "ratio", "apart"
     ]
     configuration: Optional[str]
     mode: Optional[int]
@@ -1369,6 +1455,9 @@ class ResultGoal(_ResultGoalAlways, total=False):
     """A goal, judged at this design."""
 
     quantity: str
+    of_configuration: str
+    of_mode: int
+    of_name: str
     display_unit: Optional[str]
     display_factor: Optional[float]
     sensitivity: Optional[Dict[str, Optional[float]]]
@@ -2312,6 +2401,8 @@ class CommandModesConfiguration(_CommandModesConfigurationAlways, total=False):
     """A configuration, answered."""
 
     damped_modes: List["CommandModesDampedMode"]
+    about_m: List[Optional[float]]
+    effective_mass: List["CommandModesEffectiveMass"]
 
 
 class CommandModesFailed(TypedDict):
@@ -2363,6 +2454,18 @@ class CommandModesDampedMode(TypedDict):
     damping_ratio_percent: Optional[float]
     decay_per_s: Optional[float]
     residual: float
+
+
+class CommandModesEffectiveMass(TypedDict):
+    """What modes have of a ground that moves one way."""
+
+    direction: str
+    unit: str
+    total: float
+    sum: float
+    sum_percent: Optional[float]
+    participation: List[Optional[float]]
+    effective_mass: List[Optional[float]]
 
 
 class CommandProfileListed(TypedDict):
@@ -2844,9 +2947,9 @@ StudyIndex = int
 StudyMode = Union[int, str]
 StudyPair = List["StudyNumber"]
 StudyGoal = Union[
-    "StudyGoalFrequency", "StudyGoalShape", "StudyGoalMac", "StudyGoalDamping",
+    "StudyGoalOf", "StudyGoalFrequency", "StudyGoalShape", "StudyGoalMac", "StudyGoalDamping",
     "StudyGoalResponse", "StudyGoalVibration", "StudyGoalFrequencyResponse", "StudyGoalStatic",
-    "StudyGoalLimit", "StudyGoalAvoid"
+    "StudyGoalLimit", "StudyGoalAvoid", "StudyGoalRatio", "StudyGoalApart"
 ]
 ProfilePair = List[float]
 ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
