@@ -10,8 +10,11 @@
 #include "mechanics/statics.h"
 #include "response/ports.h"
 
-/* So many numbers are read: what joints carry takes a solution of all equations each. */
+/* So many numbers are read. */
 enum { MOST = 2000 };
+/* Where joints are redundant, each number of one takes a solution of all equations, nq^2: so
+ * many multiplications together. */
+static const double WORK = 2e9;
 /* Of the largest number of its unit: below it there is rounding alone. */
 static const double NOISE = 1e-12;
 
@@ -31,6 +34,7 @@ typedef struct listing {
     mt_arena *mem;
     mt_rest_rows *out;
     int room;
+    int most;
 } listing;
 
 /* One more, by its name (NULL: memory is out). */
@@ -40,16 +44,22 @@ static mt_status add(listing *l, const char *name, mt_err *err)
     mt_port port;
     mt_err own = {.code = MT_OK};
     double value = nan("");
-    if (out->n >= MOST) {
+    if (out->n >= l->most) {
         out->left_out++;
         return MT_OK;
     }
     mt_rest_row *const rows = mt_arena_grow(l->mem, out->rows, out->n, &l->room, sizeof *rows);
     MT_TRY(mt_arena_check(l->mem, err));
     out->rows = rows;
-    MT_TRY(mt_port_at_rest(l->a->sys, name, l->mem, &port, err));
+    mt_status rc = mt_port_at_rest(l->a->sys, name, l->mem, &port, &own);
+    if (rc == MT_E_USAGE) {
+        return MT_OK; /* elements of one name without a single force */
+    }
+    if (rc != MT_OK) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
     const mt_static q = mt_port_static(&port);
-    const mt_status rc = mt_static_value(l->a->lin, &q, &value, &own);
+    rc = mt_static_value(l->a->lin, &q, &value, &own);
     if (rc != MT_OK && rc != MT_E_USAGE) {
         return mt_fail(err, rc, "%s", own.text);
     }
@@ -103,7 +113,7 @@ static mt_status add_springs(listing *l, mt_err *err)
 mt_status mt_rest_rows_of(mt_analysis *a, mt_arena *mem, mt_rest_rows *out, mt_err *err)
 {
     const mt_system *const sys = a->sys;
-    listing l = {.a = a, .mem = mem, .out = out};
+    listing l = {.a = a, .mem = mem, .out = out, .most = MOST};
     *out = (mt_rest_rows){.n = 0};
     if (!mt_linear_position(a->lin)->equilibrium.active) {
         return MT_OK;
@@ -112,6 +122,10 @@ mt_status mt_rest_rows_of(mt_analysis *a, mt_arena *mem, mt_rest_rows *out, mt_e
         MT_TRY(add(&l, sys->channels[i].name, err));
     }
     MT_TRY(add_springs(&l, err));
+    if (mt_linear_redundant(a->lin) > 0) {
+        const double more = WORK / ((double)sys->nq * sys->nq);
+        l.most = (int)fmin(MOST, out->n + more);
+    }
     for (int i = 0; i < sys->n_joints; i++) {
         const mt_system_joint *const j = &sys->joints[i];
         if (!mt_joint_kind_of(j->type)->couples) {

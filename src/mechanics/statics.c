@@ -103,11 +103,11 @@ static mt_cx beam_bow(const rest_place *p, int channel, const mt_pose *poses, mt
         mt_cx turn[3];
         for (int k = 0; k < 3; k++) {
             cx_rotate3(mt_pose_of(poses, c->body[side])->r, p->data->vec[c->dir[k]],
-                       triad + (ptrdiff_t)(3 * k));
+                       triad + ((ptrdiff_t)3 * k));
         }
         turn_between(chord, triad, turn);
         for (int k = 0; k < 3; k++) {
-            bow += cx_mul(turn[k], cx_dot3(row + (6 * side) + 3, g.e[k]));
+            bow += cx_mul(turn[k], cx_dot3(row + ((ptrdiff_t)6 * side) + 3, g.e[k]));
         }
     }
     return bow;
@@ -194,7 +194,9 @@ static mt_cx read_spring(const rest_place *p, const mt_static *q)
     mt_cx force = 0.0;
     for (int i = q->index; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
-        if (s->damper != own->damper || s->name == NULL || strcmp(s->name, own->name) != 0) {
+        const bool named = s->name != NULL && own->name != NULL;
+        if (i != q->index &&
+            !(named && s->damper == own->damper && strcmp(s->name, own->name) == 0)) {
             continue;
         }
         for (int side = 0; side < (s->measure[0] == s->measure[1] ? 1 : 2); side++) {
@@ -288,6 +290,10 @@ static mt_status admit_joint(mt_linear *lin, const rest_place *p, const mt_stati
                        sys->joints[q->index].name);
     }
     MT_TRY(mt_arena_check(&lin->scratch, err));
+    if (mt_linear_redundant(lin) == 0) {
+        mt_arena_rewind(&lin->scratch, mark);
+        return MT_OK;
+    }
     arm_of(p, q->index, arm);
     for (int i = 0; i < m; i++) {
         t[i] = acts(sys, i, q->index) ? creal(weight_of(p, i, q->axis, arm)) : 0.0;

@@ -134,15 +134,28 @@ static int count_forces(const mt_system *sys, const char *own, bool damper, int 
     return count;
 }
 
-static bool is_bushing(const mt_model *m, const char *own, bool damper)
+/* True where forces of this name are components: of a bushing, or of a joint's bearing, which is
+ * one of the system alone. */
+static bool is_bushing(const mt_system *sys, const char *own, bool damper)
 {
+    const mt_model *const m = sys->model;
     bool is = false;
+    int elements = 0;
     for (int i = 0; i < m->n_springs; i++) {
         const mt_spring *const s = &m->springs[i];
         is = is || (s->damper == damper && s->type == MT_SPRING_BUSHING &&
                     strcmp(s->name.s, own) == 0);
     }
-    return is;
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        const mt_measure_kind kind = sys->measures[s->measure[0]].kind;
+        const bool component = kind == MT_MEASURE_PLANE || kind == MT_MEASURE_ROTATION;
+        elements +=
+            component && s->damper == damper && s->name != NULL && strcmp(s->name, own) == 0
+                ? 1
+                : 0;
+    }
+    return is || elements > 1;
 }
 
 /* "NAME.x" of a bushing (moments "NAME.rx", in the plane "NAME.r"): *own becomes its name, and
@@ -157,7 +170,7 @@ static int component_of(const mt_system *sys, const char **own, bool damper, mt_
     }
     const char *const name =
         mt_arena_strndup(mem, *own, dot == NULL ? 0 : (size_t)(dot - *own));
-    if (name == NULL || axis < 0 || !is_bushing(sys->model, name, damper)) {
+    if (name == NULL || axis < 0 || !is_bushing(sys, name, damper)) {
         return -1;
     }
     *own = name;

@@ -180,6 +180,10 @@ class Tree:
         if kind == "universal":
             u = np.cross(joint["axis"], self.axis())
             joint["axis_b"] = (u / np.linalg.norm(u)).tolist()
+        if kind in ("fixed", "spherical") and self.rng.random() < 0.5:  # a bearing without mass: both bodies have what the joint carries
+            turn = [10 ** self.rng.uniform(3, 5) for _ in range(3)] if self.dim == 3 else 1e4
+            joint["compliance"] = {"stiffness_n_per_m": [10 ** self.rng.uniform(4, 6) for _ in range(self.dim)],
+                                   **({"stiffness_n_m_per_rad": turn} if kind == "fixed" else {})}
         self.joints.append(joint)
 
     def model(self):
