@@ -7,6 +7,7 @@
  * of the implicit function.
  */
 #include <math.h>
+#include <string.h>
 
 #include "mechanics/statics.h"
 #include "problem/configuration.h"
@@ -166,20 +167,21 @@ static mt_status evaluate_static(mt_workspace *w, const mt_requirement *d, int p
     return MT_OK;
 }
 
-/* "the displacement of grip.z at rest". */
+/* "static displacement of grip.z", "static moment of joint.pivot.rx". */
 static const char *about(const mt_requirement *d, mt_arena *mem)
 {
-    const mt_static_limit *const s = d->goal->static_limit;
     static const char *const quantities[] = {"compliance", "stiffness"};
-    static const char *const kinds[] = {[MT_STATIC_SENSOR] = "displacement",
-                                        [MT_STATIC_SPRING] = "force",
-                                        [MT_STATIC_JOINT] = "load",
-                                        [MT_STATIC_HOLD] = "load"};
-    return s->input.s != NULL
-               ? mt_arena_printf(mem, "static %s of %s to %s", quantities[s->quantity],
-                                 s->output.s, s->input.s)
-               : mt_arena_printf(mem, "static %s of %s", kinds[d->rest[0].of.kind],
-                                 s->output.s);
+    const mt_static_limit *const s = d->goal->static_limit;
+    if (s->input.s != NULL) {
+        return mt_arena_printf(mem, "static %s of %s to %s", quantities[s->quantity],
+                               s->output.s, s->input.s);
+    }
+    const bool moves = d->rest[0].of.kind == MT_STATIC_SENSOR;
+    const bool turns = strcmp(s->unit, moves ? "rad" : "N m") == 0;
+    return mt_arena_printf(mem, "static %s of %s",
+                           moves ? (turns ? "rotation" : "displacement")
+                                 : (turns ? "moment" : "force"),
+                           s->output.s);
 }
 
 static const char *static_subject(const mt_requirement *d, const char *what, mt_arena *mem)
