@@ -212,6 +212,11 @@ static bool is_original_best(const answer *a)
             return false;
         }
     }
+    for (int k = 0; k < p->n_choices; k++) {
+        if (mt_choice_find(&p->choices[k], p->original) == MT_ABSENT) {
+            return false; /* its values are those of several rows */
+        }
+    }
     return true;
 }
 

@@ -39,6 +39,26 @@ mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     return MT_OK;
 }
 
+/* The parts that the design takes from catalogues. */
+static void describe_parts(const mt_problem *p, const double *x, mt_result *result,
+                           mt_recommendation *rec)
+{
+    for (int k = 0; k < p->n_choices; k++) {
+        const mt_choice *const own = &p->choices[k];
+        const int row = own->rows == NULL ? MT_ABSENT : mt_choice_find(own, x);
+        const char *part = NULL;
+        if (row != MT_ABSENT) {
+            part = own->rows->names != NULL
+                       ? mt_arena_strdup(&result->mem, own->rows->names[row])
+                       : mt_arena_printf(&result->mem, "row %d", own->rows->number[row]);
+        }
+        for (int i = own->first; i < own->first + own->n && own->rows != NULL; i++) {
+            rec->parameters[i].catalogue = mt_arena_strdup(&result->mem, own->rows->catalogue);
+            rec->parameters[i].part = part;
+        }
+    }
+}
+
 static mt_status describe_parameters(const mt_problem *p, const double *x, const double *t,
                                      mt_result *result, mt_recommendation *rec, mt_err *err)
 {
@@ -74,7 +94,8 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
         };
     }
     rec->change = sqrt(change);
-    return MT_OK;
+    describe_parts(p, x, result, rec);
+    return mt_arena_check(&result->mem, err);
 }
 
 /* The objective at this design. The fresh problem has no coordinate for the least clearance: it

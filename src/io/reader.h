@@ -58,6 +58,8 @@ typedef struct mt_reader {
     X(MT_KEY_NUMBERS, MT_JSON_ARRAY, "a list")                                                 \
     X(MT_KEY_OBJECT, MT_JSON_OBJECT, "an object")                                              \
     X(MT_KEY_LIST_OR_OBJECT, MT_JSON_ARRAY | MT_JSON_OBJECT, "a list or an object")            \
+    X(MT_KEY_TEXT_LIST_OR_OBJECT, MT_JSON_STRING | MT_JSON_ARRAY | MT_JSON_OBJECT,             \
+      "a name, a list or an object")                                                           \
     X(MT_KEY_TEXT_OR_LIST, MT_JSON_STRING | MT_JSON_ARRAY, "a string or a list")               \
     X(MT_KEY_TEXT_OR_OBJECT, MT_JSON_STRING | MT_JSON_OBJECT, "a string or an object")         \
     X(MT_KEY_TEXT_OR_COUNT, MT_JSON_NUMBER | MT_JSON_STRING, "a name or a whole number")       \

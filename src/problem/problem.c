@@ -38,9 +38,44 @@ static void init_measure(mt_problem *p, int i)
     p->floor[i] = logarithmic && !(least > 0.0) ? FLOOR_PART * v->original : 0.0;
 }
 
+const double *mt_choice_row(const mt_choice *choice, int row)
+{
+    return choice->value + ((ptrdiff_t)row * choice->n);
+}
+
+int mt_choice_find(const mt_choice *choice, const double *x)
+{
+    for (int i = 0; i < choice->n_rows; i++) {
+        const double *const row = mt_choice_row(choice, i);
+        bool same = true;
+        for (int k = 0; k < choice->n && same; k++) {
+            same = row[k] == x[choice->first + k];
+        }
+        if (same) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
+static void list_choices(mt_problem *p)
+{
+    for (int i = 0; i < p->n;) {
+        const mt_variable *const v = &p->study->variables[i];
+        const int n = v->rows == NULL ? 1 : v->rows->n;
+        if (v->n_catalogue > 0) {
+            p->choices[p->n_choices++] =
+                v->rows == NULL ? (mt_choice){i, 1, v->n_catalogue, v->catalogue, NULL}
+                                : (mt_choice){i, n, v->rows->n_rows, v->rows->value, v->rows};
+        }
+        i += n;
+    }
+}
+
 static mt_status init_variables(mt_problem *p, mt_err *err)
 {
     const size_t n = (size_t)p->n;
+    p->choices = mt_arena_alloc(&p->mem, n, sizeof *p->choices);
     p->inputs = mt_arena_int(&p->mem, n);
     p->original = mt_arena_f64(&p->mem, n, 1);
     p->scale = mt_arena_f64(&p->mem, n, 1);
@@ -52,6 +87,7 @@ static mt_status init_variables(mt_problem *p, mt_err *err)
         p->original[i] = v->original;
         init_measure(p, i);
     }
+    list_choices(p);
     return MT_OK;
 }
 

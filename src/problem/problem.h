@@ -140,16 +140,28 @@ typedef struct mt_objective_stage {
     mt_node *mass; /* [n_mass] nodes in the first configuration's program */
 } mt_objective_stage;
 
+/* What is chosen from a catalogue at once: the value of a variable, or a row of values of n
+ * neighbouring ones. */
+typedef struct mt_choice {
+    int first; /* variables first .. first + n - 1 */
+    int n;
+    int n_rows;
+    const double *value;           /* [n_rows x n] */
+    const mt_catalogue_rows *rows; /* NULL: values stand alone */
+} mt_choice;
+
 typedef struct mt_problem {
     const mt_study *study; /* study and run must outlive the problem */
     const mt_run *run;     /* never NULL */
     mt_reference_cache *references;
     mt_arena mem;
-    int n;            /* variables */
-    int *inputs;      /* [n] parameters */
-    double *original; /* [n] */
-    double *scale;    /* [n] NaN: logarithmic; else x = t * scale */
-    double *floor;    /* [n] floor of the logarithm; 0: none */
+    int n; /* variables */
+    int n_choices;
+    mt_choice *choices; /* [n_choices] in the order of their variables */
+    int *inputs;        /* [n] parameters */
+    double *original;   /* [n] */
+    double *scale;      /* [n] NaN: logarithmic; else x = t * scale */
+    double *floor;      /* [n] floor of the logarithm; 0: none */
     int n_views;
     mt_configuration_problem *views;
     int n_requirements;
@@ -193,5 +205,10 @@ static inline double mt_problem_dx_dt_at(const mt_problem *p, int i, double x)
 {
     return MT_HAS(p->scale[i]) ? p->scale[i] : x > p->floor[i] ? x : p->floor[i];
 }
+
+/* The values of row `row` of a choice, [n]. */
+const double *mt_choice_row(const mt_choice *choice, int row);
+/* The row with the values x [n of the problem]; MT_ABSENT where none has. */
+int mt_choice_find(const mt_choice *choice, const double *x);
 
 #endif

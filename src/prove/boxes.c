@@ -39,6 +39,7 @@ static mt_status alloc_box_stack(mt_boxes *b, mt_arena *mem, mt_err *err)
     b->now_lo = mt_arena_f64(mem, n, 1);
     b->now_hi = mt_arena_f64(mem, n, 1);
     b->now_depth = mt_arena_alloc(mem, n, sizeof(signed char));
+    b->split = mt_arena_f64(mem, n, 1);
     b->middle = mt_arena_f64(mem, n, 1);
     b->beyond = mt_arena_f64(mem, n, 1);
     return mt_arena_check(mem, err);
@@ -51,7 +52,9 @@ mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, int n
                     .capacity = (MOST_DEPTH * c->n) + 2,
                     .n_known = n_known,
                     .n_catalogue = loose_only ? NULL : c->n_catalogue,
-                    .catalogue = c->catalogue};
+                    .catalogue = c->catalogue,
+                    .n_rows = loose_only ? 0 : c->n_rows,
+                    .rows = c->rows};
     MT_TRY(alloc_box_stack(b, mem, err));
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     bool *const bound = mt_arena_alloc(mem, (size_t)c->n, sizeof *bound);
@@ -118,16 +121,69 @@ static void find_middle(mt_boxes *b, int i)
         const int first = rank_of(b, i, b->now_lo[i], false);
         const int last = rank_of(b, i, b->now_hi[i], false);
         const int middle = first + ((last - first) / 2);
-        b->middle[i] = b->catalogue[i][middle];
-        b->beyond[i] = middle < last ? b->catalogue[i][middle + 1] : b->middle[i];
+        b->split[i] = b->catalogue[i][middle];
+        b->beyond[i] = middle < last ? b->catalogue[i][middle + 1] : b->split[i];
         return;
     }
     const double lo = b->now_lo[i];
     const double hi = b->now_hi[i];
     const double m =
         b->logarithmic[i] && lo > 0.0 ? sqrt(lo) * sqrt(hi) : lo + (0.5 * (hi - lo));
-    b->middle[i] = fmin(fmax(m, lo), hi);
-    b->beyond[i] = b->middle[i];
+    b->split[i] = fmin(fmax(m, lo), hi);
+    b->beyond[i] = b->split[i];
+}
+
+static bool is_within(const mt_certify_rows *r, const double *row, const double *lo,
+                      const double *hi)
+{
+    bool within = true;
+    for (int k = 0; k < r->n && within; k++) {
+        within = row[k] >= lo[r->first + k] && row[k] <= hi[r->first + k];
+    }
+    return within;
+}
+
+/* Closes the popped box around the rows within it; false: there is none. */
+static bool close_around_rows(mt_boxes *b, const mt_certify_rows *r)
+{
+    double *const lo = b->now_lo + r->first;
+    double *const hi = b->now_hi + r->first;
+    bool any = false;
+    for (int i = 0; i < r->n_rows; i++) {
+        const double *const row = r->value + ((ptrdiff_t)i * r->n);
+        if (!is_within(r, row, b->now_lo, b->now_hi)) {
+            continue;
+        }
+        for (int k = 0; k < r->n; k++) {
+            b->middle[r->first + k] = any ? fmin(b->middle[r->first + k], row[k]) : row[k];
+            b->split[r->first + k] = any ? fmax(b->split[r->first + k], row[k]) : row[k];
+        }
+        any = true;
+    }
+    for (int k = 0; k < r->n && any; k++) {
+        lo[k] = b->middle[r->first + k];
+        hi[k] = b->split[r->first + k];
+    }
+    return any;
+}
+
+/* The row nearest to where the box is halved, in parts of its widths; the first of equal
+ * ones. */
+static void find_middle_row(mt_boxes *b, const mt_certify_rows *r)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < r->n_rows; i++) {
+        const double *const row = r->value + ((ptrdiff_t)i * r->n);
+        double away = 0.0;
+        for (int k = 0; k < r->n; k++) {
+            const double width = b->now_hi[r->first + k] - b->now_lo[r->first + k];
+            away += width > 0.0 ? fabs(row[k] - b->split[r->first + k]) / width : 0.0;
+        }
+        if (away < least && is_within(r, row, b->now_lo, b->now_hi)) {
+            least = away;
+            memcpy(b->middle + r->first, row, (size_t)r->n * sizeof *row);
+        }
+    }
 }
 
 static int *known_of(const mt_boxes *b, int box)
@@ -135,12 +191,13 @@ static int *known_of(const mt_boxes *b, int box)
     return b->known + ((ptrdiff_t)box * b->n_known);
 }
 
-bool mt_boxes_pop(mt_boxes *b)
+/* The last box of the stack; false: there is none. */
+static bool take_box(mt_boxes *b)
 {
+    const size_t n = (size_t)b->n;
     if (b->count == 0) {
         return false;
     }
-    const size_t n = (size_t)b->n;
     b->count--;
     const size_t at = (size_t)b->count * n;
     memcpy(b->now_known, known_of(b, b->count), (size_t)b->n_known * sizeof *b->known);
@@ -150,10 +207,26 @@ bool mt_boxes_pop(mt_boxes *b)
     memcpy(b->now_lo, b->lo + at, n * sizeof *b->lo);
     memcpy(b->now_hi, b->hi + at, n * sizeof *b->hi);
     memcpy(b->now_depth, b->depth + at, n);
-    for (int i = 0; i < b->n; i++) {
-        find_middle(b, i);
-    }
     return true;
+}
+
+bool mt_boxes_pop(mt_boxes *b)
+{
+    bool empty = true;
+    while (empty && take_box(b)) {
+        empty = false;
+        for (int k = 0; k < b->n_rows && !empty; k++) {
+            empty = !close_around_rows(b, &b->rows[k]);
+        }
+    }
+    for (int i = 0; i < b->n && !empty; i++) {
+        find_middle(b, i);
+        b->middle[i] = b->split[i];
+    }
+    for (int k = 0; k < b->n_rows && !empty; k++) {
+        find_middle_row(b, &b->rows[k]);
+    }
+    return !empty;
 }
 
 static void push_half(mt_boxes *b, int split, bool upper_half)
@@ -167,7 +240,7 @@ static void push_half(mt_boxes *b, int split, bool upper_half)
     if (upper_half) {
         b->lo[at + (size_t)split] = b->beyond[split];
     } else {
-        b->hi[at + (size_t)split] = b->middle[split];
+        b->hi[at + (size_t)split] = b->split[split];
     }
     b->depth[at + (size_t)split]++;
     b->count++;
@@ -177,7 +250,7 @@ bool mt_boxes_split(mt_boxes *b)
 {
     int widest = -1;
     for (int i = 0; i < b->n; i++) {
-        const bool inside = b->now_lo[i] < b->middle[i] && b->middle[i] < b->now_hi[i];
+        const bool inside = b->now_lo[i] < b->split[i] && b->split[i] < b->now_hi[i];
         const bool values = is_discrete(b, i) && b->now_lo[i] < b->now_hi[i];
         const bool can = b->active[i] && b->now_depth[i] < MOST_DEPTH && (values || inside);
         if (can && (widest < 0 || b->now_depth[i] < b->now_depth[widest])) {

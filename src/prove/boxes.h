@@ -9,8 +9,9 @@
  * relative width (2^-depth of the width in t at the start, so that the count of bisections
  * decides; the first of equal ones). Depth first: the stack never holds more than one box per
  * bisection. Along an input with a catalogue a box begins and ends at values of it, and its
- * halves exclude the gap between two values. The knowledge about a box (n_known numbers of the
- * caller) holds in its halves.
+ * halves exclude the gap between two values; inputs that take rows together span the rows that
+ * are within the box, and a box without a row is dropped. The knowledge about a box (n_known
+ * numbers of the caller) holds in its halves.
  */
 typedef struct mt_boxes {
     int n;
@@ -23,13 +24,16 @@ typedef struct mt_boxes {
     bool *logarithmic;      /* [n] */
     const int *n_catalogue; /* as in mt_certify; NULL: none */
     const double *const *catalogue;
+    int n_rows;
+    const mt_certify_rows *rows;
     int n_known;
     int *known;     /* capacity x n_known */
     int *now_known; /* [n_known] knowledge about the popped box; the caller adds to it */
     double *now_lo; /* [n] the popped box */
     double *now_hi;
     signed char *now_depth;
-    double *middle; /* [n] middle of the popped box; with a catalogue, the middle value */
+    double *split;  /* [n] where the popped box is halved; with a catalogue, the middle value */
+    double *middle; /* [n] a design near that: the same, but of inputs that take rows a row */
     double *beyond; /* [n] lower end of its upper half */
 } mt_boxes;
 

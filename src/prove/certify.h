@@ -57,6 +57,14 @@ typedef struct mt_certify_cap {
     double below;
 } mt_certify_cap;
 
+/* Inputs first .. first + n - 1 take the values of one row together. */
+typedef struct mt_certify_rows {
+    int first;
+    int n;
+    int n_rows;
+    const double *value; /* [n_rows x n] */
+} mt_certify_rows;
+
 /*
  * The requirements on the designs lower <= x <= upper, in which inputs with a catalogue take
  * only its values. A mode placement is int[n_bands]: for each band the number of vibration
@@ -84,7 +92,9 @@ typedef struct mt_certify {
     const double *upper;
     const int *n_catalogue;         /* [n] 0: continuous; NULL: all are */
     const double *const *catalogue; /* [n] ascending values */
-    const mt_certify_cap *cap;      /* NULL: any value of the objective */
+    int n_rows;
+    const mt_certify_rows *rows; /* [n_rows] of inputs with a catalogue, each of its column */
+    const mt_certify_cap *cap;   /* NULL: any value of the objective */
     /* stop at the first design that is found; nothing is proven then */
     bool any;
     /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */

@@ -23,16 +23,25 @@ enum {
 
 /* Parameters, which people see in the units that they gave them in. */
 
-/* name, unit, original, recommended, change, bound. */
+/* name, unit, original, recommended, change, bound; and the part that each comes from, where
+ * some do. */
 static mt_table parameters_table(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
+    bool parts = false;
+    for (int i = 0; i < r->n_parameters; i++) {
+        parts = parts || r->parameters[i].catalogue != NULL;
+    }
     mt_table_column(&t, "parameter", "name", MT_ALIGN_LEFT);
     mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
     mt_table_column(&t, "before", "original", MT_ALIGN_POINT);
     mt_table_column(&t, "after", "recommended", MT_ALIGN_POINT);
     mt_table_column(&t, "change [%]", "change_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "at bound", "at_bound", MT_ALIGN_LEFT);
+    if (parts) {
+        mt_table_column(&t, "catalogue", "catalogue", MT_ALIGN_LEFT);
+        mt_table_column(&t, "part", "part", MT_ALIGN_LEFT);
+    }
     for (int i = 0; i < r->n_parameters; i++) {
         const mt_result_parameter *const p = &r->parameters[i];
         mt_table_text(&t, p->name);
@@ -41,6 +50,10 @@ static mt_table parameters_table(const mt_recommendation *r)
         mt_table_shown(&t, p->recommended, p->display_factor, VALUE_DIGITS);
         mt_table_percent(&t, p->change_percent, PERCENT_DIGITS);
         mt_table_text(&t, p->at_bound);
+        if (parts) {
+            mt_table_text(&t, p->catalogue);
+            mt_table_text(&t, p->part);
+        }
     }
     return t;
 }

@@ -38,6 +38,10 @@ typedef struct mt_result_parameter {
     /* below this value the logarithm continues as its tangent; NaN: no floor */
     double measure_floor;
     double measure_scale; /* of a linear measure: (new - original)/scale; NaN: not linear */
+    /* where it comes from a row of a catalogue of parts: the catalogue, and the row by its name
+     * or as "row 3"; NULL: it does not */
+    const char *catalogue;
+    const char *part; /* NULL, too, at the original design where that is no row */
 } mt_result_parameter;
 
 typedef struct mt_result_frequency {

@@ -43,6 +43,15 @@ static const mt_field PARAMETER_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("measure_scale", measure_scale,
                         "Change that counts as 1, in the unit of the value; null where the "
                         "measure is logarithmic."),
+    MT_F_TEXT("catalogue", catalogue,
+              "The study's catalogue of parts of which a row sets it together with others; "
+              "absent: none.",
+              .other = MT_F_MEMBER(const char *, catalogue), .later = true),
+    MT_F_TEXT(
+        "part", part,
+        "That row of this design: its name, or its number from 1 as \"row 3\"; absent: the "
+        "values are those of no row.",
+        .other = MT_F_MEMBER(const char *, part), .later = true),
 };
 static const mt_record PARAMETER =
     MT_F_RECORD_OF(PARAMETER_FIELDS, "parameter", "A parameter that the study may change.");

@@ -287,12 +287,13 @@ static mt_status close_on(const mt_catalogue_search *d, const mt_combination *c,
     double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < d->n_listed; k++) {
-        x[d->variable[k]] = p->study->variables[d->variable[k]].catalogue[c->pick[k]];
+        const mt_choice *const own = &d->choice[k];
+        memcpy(x + own->first, mt_choice_row(own, c->pick[k]), (size_t)own->n * sizeof *x);
     }
     MT_TRY(mt_catalogue_search_close(d->c, x, w, mem, out, err));
     if (out->search.starts <= 0) {
-        out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_listed));
-        out->search.agree = out->rows.eq.n < p->n - d->n_listed ? STARTS_AGREE : 0;
+        out->search.starts = STARTS_BASE + (STARTS_PER_VARIABLE * (p->n - d->n_set));
+        out->search.agree = out->rows.eq.n < p->n - d->n_set ? STARTS_AGREE : 0;
     }
     out->search.max_evaluations = budget > 1 ? budget - 1 : budget; /* its objectives */
     out->proof_work = fmin(out->proof_work, MT_CERTIFY_WORK);       /* there are many */
@@ -642,16 +643,18 @@ static double size_of(const crossing *x, int row)
     return stage ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
 }
 
-/* Greatest change of any row, in tolerances, over all values of variable i; infinite where a
+/* Greatest change of any row, in tolerances, over all values of a choice; infinite where a
  * mode placement changes or a value does not exist. */
-static double effect_of(crossing *x, int i)
+static double effect_of(crossing *x, const mt_choice *choice, const double *best)
 {
     const mt_problem *const p = x->d->p;
-    const mt_variable *const v = &p->study->variables[i];
-    const double keep = x->t[i];
+    const size_t size = (size_t)choice->n * sizeof *x->t;
     double most = 0.0;
-    for (int k = 0; k < v->n_catalogue && most < 1.0; k++) {
-        x->t[i] = mt_problem_t(p, i, v->catalogue[k]);
+    for (int k = 0; k < choice->n_rows && most < 1.0; k++) {
+        const double *const row = mt_choice_row(choice, k);
+        for (int i = 0; i < choice->n; i++) {
+            x->t[choice->first + i] = mt_problem_t(p, choice->first + i, row[i]);
+        }
         if (!evaluate_crossing_rows(x, x->now, x->below + p->n_bands) ||
             memcmp(x->below, x->below + p->n_bands, (size_t)p->n_bands * sizeof(int)) != 0) {
             most = HUGE_VAL;
@@ -660,27 +663,29 @@ static double effect_of(crossing *x, int i)
             most = fmax(most, fabs(x->now[r] - x->at[r]) / size_of(x, r));
         }
     }
-    x->t[i] = keep;
+    memcpy(x->t + choice->first, best + choice->first, size);
     return most;
 }
 
-static mt_status cross(crossing *x, const mt_nlp_result *continuous, mt_nlp_result *out,
-                       mt_err *err)
+static mt_status cross(crossing *x, const double *best, const mt_nlp_result *continuous,
+                       mt_nlp_result *out, mt_err *err)
 {
-    const mt_problem *const p = x->d->p;
-    const size_t n = (size_t)p->n;
+    const size_t n = (size_t)x->d->p->n;
     const size_t room = (size_t)x->d->n_listed + (size_t)continuous->n_unidentifiable;
     out->unidentifiable = mt_arena_f64(x->d->mem, n, room);
     out->unidentifiable_effect = mt_arena_f64(x->d->mem, room, 1);
     MT_TRY(mt_arena_check(x->d->mem, err));
     const bool known = evaluate_crossing_rows(x, x->at, x->below);
     for (int k = 0; k < x->d->n_listed && known; k++) {
-        const int i = x->d->variable[k];
-        const double effect =
-            p->study->variables[i].n_catalogue > 1 ? effect_of(x, i) : HUGE_VAL;
+        const mt_choice *const own = &x->d->choice[k];
+        const double effect = own->n_rows > 1 ? effect_of(x, own, best) : HUGE_VAL;
         if (effect < 1.0) {
-            out->unidentifiable_effect[out->n_unidentifiable] = effect;
-            out->unidentifiable[((size_t)out->n_unidentifiable++ * n) + (size_t)i] = 1.0;
+            double *const way =
+                out->unidentifiable + ((size_t)out->n_unidentifiable * n) + own->first;
+            for (int i = 0; i < own->n; i++) {
+                way[i] = 1.0 / sqrt((double)own->n);
+            }
+            out->unidentifiable_effect[out->n_unidentifiable++] = effect;
         }
     }
     if (x->rc != MT_OK) {
@@ -700,7 +705,7 @@ static long questions(const mt_catalogue_search *d)
 {
     long n = d->mixed ? SEARCH_LEAST : 1;
     for (int k = 0; k < d->n_listed; k++) {
-        n += d->p->study->variables[d->variable[k]].n_catalogue;
+        n += d->choice[k].n_rows;
     }
     return n;
 }
@@ -733,7 +738,7 @@ static mt_status catalogue_search_unidentifiable(mt_catalogue_search *d,
         MT_TRY(catalogue_search_directions(d, best, d->mem, &continuous, err));
         d->evals += continuous.evals;
     }
-    MT_TRY(cross(&x, &continuous, out, err));
+    MT_TRY(cross(&x, best->t, &continuous, out, err));
     out->evals = d->evals;
     return MT_OK;
 }
@@ -756,16 +761,15 @@ bool mt_study_has_catalogues(const mt_study *study)
 static mt_status list_catalogue_variables(mt_catalogue_search *d, mt_err *err)
 {
     const mt_problem *const p = d->p;
-    d->variable = mt_arena_int(d->mem, (size_t)p->n);
     d->values = mt_arena_alloc(d->mem, (size_t)d->n_workers, sizeof *d->values);
     d->steps = mt_steps_new(MT_STEPS_MOST, d->mem);
     MT_TRY(mt_arena_check(d->mem, err));
-    for (int i = 0; i < p->n; i++) {
-        if (p->study->variables[i].n_catalogue > 0) {
-            d->variable[d->n_listed++] = i;
-        }
+    d->n_listed = p->n_choices;
+    d->choice = p->choices;
+    for (int k = 0; k < d->n_listed; k++) {
+        d->n_set += d->choice[k].n;
     }
-    d->mixed = d->n_listed < p->n;
+    d->mixed = d->n_set < p->n;
     for (int i = 0; i < d->n_workers && !d->mixed; i++) {
         MT_TRY(mt_subproblem_values_init(d->c, d->mem, &d->values[i], err));
     }
@@ -777,12 +781,15 @@ void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c)
     const mt_problem *const p = d->p;
     double change = 0.0;
     for (int k = 0; k < d->n_listed; k++) {
-        const int i = d->variable[k];
-        const mt_variable *const v = &p->study->variables[i];
-        const double t = mt_problem_t(p, i, v->catalogue[c->pick[k]]);
-        const double away = t - d->c->origin_t[i];
-        c->t[i] = t;
-        change += 0.5 * v->weight * away * away;
+        const mt_choice *const own = &d->choice[k];
+        const double *const row = mt_choice_row(own, c->pick[k]);
+        for (int j = 0; j < own->n; j++) {
+            const int i = own->first + j;
+            const double t = mt_problem_t(p, i, row[j]);
+            const double away = t - d->c->origin_t[i];
+            c->t[i] = t;
+            change += 0.5 * p->study->variables[i].weight * away * away;
+        }
     }
     c->change = change;
 }
@@ -869,7 +876,7 @@ static mt_status list_all(enumeration *e, mt_err *err)
     for (int i = 0; i < e->n; i++) {
         int rest = i;
         for (int k = d->n_listed - 1; k >= 0; k--) {
-            const int values = d->p->study->variables[d->variable[k]].n_catalogue;
+            const int values = d->choice[k].n_rows;
             e->list[i].pick[k] = rest % values;
             rest /= values;
         }
@@ -887,9 +894,10 @@ static void find_bounds(const mt_catalogue_search *d, const mt_combination *c, d
         upper[i] = d->c->upper[i];
     }
     for (int k = 0; k < d->n_listed; k++) {
-        const int i = d->variable[k];
-        lower[i] = d->p->study->variables[i].catalogue[c->pick[k]];
-        upper[i] = lower[i];
+        const mt_choice *const own = &d->choice[k];
+        const size_t size = (size_t)own->n * sizeof *lower;
+        memcpy(lower + own->first, mt_choice_row(own, c->pick[k]), size);
+        memcpy(upper + own->first, mt_choice_row(own, c->pick[k]), size);
     }
 }
 
@@ -1263,7 +1271,7 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
     MT_TRY(mt_arena_check(mem, err));
     double n = 1.0;
     for (int k = 0; k < d.n_listed; k++) {
-        n *= (double)d.p->study->variables[d.variable[k]].n_catalogue;
+        n *= (double)d.choice[k].n_rows;
     }
     mt_combination **all = NULL;
     int n_all = 0;

@@ -7,9 +7,9 @@
 #include "result/result.h"
 
 /*
- * Search with catalogues. A combination is one value from every catalogue; remaining variables
- * are searched continuously for each combination (an ordinary search, over mode placements
- * where there are bands).
+ * Search with catalogues. A combination is one value, or one row of values, from every
+ * catalogue; remaining variables are searched continuously for each combination (an ordinary
+ * search, over mode placements where there are bands).
  *
  * Few combinations are enumerated, best first, until no other can be among the designs asked
  * for. Beyond
@@ -62,7 +62,7 @@ typedef struct mt_catalogue_search_report {
 
 /* One combination and its evaluation. */
 typedef struct mt_combination {
-    int *pick;          /* [n_listed] index in each catalogue */
+    int *pick;          /* [n_listed] row of each choice */
     double *t;          /* [n + 1] the design; coordinates of catalogues are those of pick */
     double *f;          /* [n_stages] objectives there */
     const double *from; /* [n + 1] a design t to start from; NULL: none */
@@ -91,8 +91,9 @@ typedef struct mt_catalogue_search {
     const mt_problem *p;
     const mt_subproblem *c; /* the relaxed problem: every catalogue an interval */
     mt_arena *mem;
-    int n_listed;
-    int *variable; /* [n_listed] */
+    int n_listed;            /* choices from catalogues */
+    const mt_choice *choice; /* [n_listed] */
+    int n_set;               /* variables that they set */
     bool mixed;
     mt_nlp_values *values; /* [n_workers] where not mixed */
     int n_broken;          /* combinations */

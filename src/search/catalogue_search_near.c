@@ -86,27 +86,79 @@ static mt_status verify_proposed_neighbours(walk *w, mt_err *err)
     return MT_OK;
 }
 
-/* Index of the last value whose coordinate is at most t (0 where none is), and the position of
- * t between it and the next, 0 to 1. */
-static int bracket(const mt_catalogue_search *d, int k, double t, double *part)
+/* The two rows that a choice is rounded to, and where its t stands between them, 0 to 1. */
+typedef struct rounding {
+    int low;
+    int high;
+    double part;
+} rounding;
+
+/* The last value whose coordinate is at most t (the first where none is), and the next. */
+static rounding bracket_value(const mt_catalogue_search *d, const mt_choice *own, double t)
 {
-    const int i = d->variable[k];
-    const mt_variable *const v = &d->p->study->variables[i];
+    const int i = own->first;
     int at = 0;
-    while (at + 1 < v->n_catalogue && mt_problem_t(d->p, i, v->catalogue[at + 1]) <= t) {
+    while (at + 1 < own->n_rows && mt_problem_t(d->p, i, own->value[at + 1]) <= t) {
         at++;
     }
-    *part = 0.0;
-    if (at + 1 < v->n_catalogue) {
-        const double low = mt_problem_t(d->p, i, v->catalogue[at]);
-        const double high = mt_problem_t(d->p, i, v->catalogue[at + 1]);
-        *part = fmin(fmax((t - low) / (high - low), 0.0), 1.0);
+    rounding r = {at, at, 0.0};
+    if (at + 1 < own->n_rows) {
+        const double low = mt_problem_t(d->p, i, own->value[at]);
+        const double high = mt_problem_t(d->p, i, own->value[at + 1]);
+        r.high = at + 1;
+        r.part = fmin(fmax((t - low) / (high - low), 0.0), 1.0);
     }
-    return at;
+    return r;
 }
 
-/* The variables whose t lies nearest to the middle of two values: open[most]. */
-static void choose_undecided(int n, const double *part, int most, int *open)
+/* Distance of a row from t[own->n], each variable in parts of what its catalogue spans. */
+static double row_distance(const mt_catalogue_search *d, const mt_choice *own, int row,
+                           const double *t)
+{
+    const double *const value = mt_choice_row(own, row);
+    double sum = 0.0;
+    for (int j = 0; j < own->n; j++) {
+        const int i = own->first + j;
+        const mt_variable *const v = &d->p->study->variables[i];
+        const double span = mt_problem_t(d->p, i, v->catalogue[v->n_catalogue - 1]) -
+                            mt_problem_t(d->p, i, v->catalogue[0]);
+        const double away = mt_problem_t(d->p, i, value[j]) - t[j];
+        sum += span > 0.0 ? (away / span) * (away / span) : 0.0;
+    }
+    return sqrt(sum);
+}
+
+/* The nearest row and the second nearest, the first of equal ones. */
+static rounding bracket_row(const mt_catalogue_search *d, const mt_choice *own, const double *t)
+{
+    rounding r = {0, 0, 0.0};
+    double nearest = HUGE_VAL;
+    double second = HUGE_VAL;
+    for (int i = 0; i < own->n_rows; i++) {
+        const double here = row_distance(d, own, i, t);
+        if (here < nearest) {
+            r.high = nearest < HUGE_VAL ? r.low : i;
+            second = nearest;
+            r.low = i;
+            nearest = here;
+        } else if (here < second) {
+            second = here;
+            r.high = i;
+        }
+    }
+    r.part = second > 0.0 && second < HUGE_VAL ? nearest / (nearest + second) : 0.0;
+    return r;
+}
+
+static rounding bracket(const mt_catalogue_search *d, int k, const double *t)
+{
+    const mt_choice *const own = &d->choice[k];
+    return own->n == 1 ? bracket_value(d, own, t[own->first])
+                       : bracket_row(d, own, t + own->first);
+}
+
+/* The choices whose t lies nearest to the middle of two rows: open[most]. */
+static void choose_undecided(int n, const rounding *to, int most, int *open)
 {
     for (int b = 0; b < most; b++) {
         double least = HUGE_VAL;
@@ -115,8 +167,8 @@ static void choose_undecided(int n, const double *part, int most, int *open)
             for (int c = 0; c < b; c++) {
                 taken = taken || open[c] == k;
             }
-            if (!taken && fabs(part[k] - 0.5) < least) {
-                least = fabs(part[k] - 0.5);
+            if (!taken && fabs(to[k].part - 0.5) < least) {
+                least = fabs(to[k].part - 0.5);
                 open[b] = k;
             }
         }
@@ -130,24 +182,21 @@ static mt_status propose_roundings(walk *w, const double *t, mt_err *err)
     const int n = d->n_listed;
     const int most = d->mixed ? UNDECIDED_MIXED : UNDECIDED;
     const int both = n < most ? n : most;
-    int *const low = mt_arena_int(d->mem, (size_t)n);
+    rounding *const to = mt_arena_alloc(d->mem, (size_t)n, sizeof *to);
     int *const pick = mt_arena_int(d->mem, (size_t)n);
     int *const open = mt_arena_int(d->mem, (size_t)most);
-    double *const part = mt_arena_f64(d->mem, (size_t)n, 1);
     MT_TRY(mt_arena_check(d->mem, err));
     for (int k = 0; k < n; k++) {
-        low[k] = bracket(d, k, t[d->variable[k]], &part[k]);
+        to[k] = bracket(d, k, t);
     }
-    choose_undecided(n, part, both, open);
+    choose_undecided(n, to, both, open);
     for (int way = 0; way < 1 << both; way++) {
         for (int k = 0; k < n; k++) {
-            pick[k] = low[k] + (part[k] > 0.5 ? 1 : 0);
+            pick[k] = to[k].part > 0.5 ? to[k].high : to[k].low;
         }
         for (int b = 0; b < both; b++) {
-            const int k = open[b];
-            const int last = d->p->study->variables[d->variable[k]].n_catalogue - 1;
-            const int up = low[k] + ((way >> b) & 1);
-            pick[k] = up < last ? up : last;
+            const rounding *const r = &to[open[b]];
+            pick[open[b]] = ((way >> b) & 1) != 0 ? r->high : r->low;
         }
         propose(w, pick);
     }
@@ -181,31 +230,75 @@ static mt_status round_relaxed(walk *w, mt_err *err)
     return verify_proposed_neighbours(w, err);
 }
 
-/* Step variable k of pick; false at an end of its catalogue. */
-static bool step_catalogue_value(const walk *w, int k, int by, int *pick)
+/* The choice that sets the i-th of the discrete variables. */
+static int choice_of(const mt_catalogue_search *d, int i, int *column)
 {
-    const int last = w->d->p->study->variables[w->d->variable[k]].n_catalogue - 1;
-    pick[k] += by;
-    return pick[k] >= 0 && pick[k] <= last;
+    int k = 0;
+    while (i >= d->choice[k].n) {
+        i -= d->choice[k++].n;
+    }
+    *column = i;
+    return k;
+}
+
+/* The row nearest to `row` among those in which this column is less (by -1) or greater;
+ * MT_ABSENT: there is none. */
+static int next_row(const mt_catalogue_search *d, const mt_choice *own, int column, int by,
+                    int row)
+{
+    double t[MT_MAX_ROW_VARIABLES];
+    const double *const from = mt_choice_row(own, row);
+    int best = MT_ABSENT;
+    double least = HUGE_VAL;
+    for (int j = 0; j < own->n; j++) {
+        t[j] = mt_problem_t(d->p, own->first + j, from[j]);
+    }
+    for (int i = 0; i < own->n_rows; i++) {
+        const double change = mt_choice_row(own, i)[column] - from[column];
+        const double here = change * by > 0.0 ? row_distance(d, own, i, t) : HUGE_VAL;
+        if (here < least) {
+            least = here;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Step the choice of the i-th discrete variable to a neighbour along that variable; false at
+ * an end of its catalogue. *k: the choice. */
+static bool step_catalogue_value(const walk *w, int i, int by, int *pick, int *k)
+{
+    int column = 0;
+    *k = choice_of(w->d, i, &column);
+    const mt_choice *const own = &w->d->choice[*k];
+    const int to = own->n == 1 ? pick[*k] + by : next_row(w->d, own, column, by, pick[*k]);
+    if (to < 0 || to >= own->n_rows) {
+        return false;
+    }
+    pick[*k] = to;
+    return true;
 }
 
 static void propose_neighbours(walk *w, const mt_combination *c, int *pick)
 {
-    const int n = w->d->n_listed;
-    const size_t size = (size_t)n * sizeof *pick;
+    const int n = w->d->n_set;
+    const size_t size = (size_t)w->d->n_listed * sizeof *pick;
     const bool pairs = !w->d->mixed && n <= PAIRS_OF_AT_MOST;
     for (int way = 0; way < 2 * n; way++) {
+        int k = 0;
         memcpy(pick, c->pick, size);
-        if (!step_catalogue_value(w, way / 2, way % 2 == 0 ? -1 : 1, pick)) {
+        if (!step_catalogue_value(w, way / 2, way % 2 == 0 ? -1 : 1, pick, &k)) {
             continue;
         }
         propose(w, pick);
         for (int other = 0; other < way - (way % 2) && pairs; other++) {
-            const int before = pick[other / 2];
-            if (step_catalogue_value(w, other / 2, other % 2 == 0 ? -1 : 1, pick)) {
+            const int column = other / 2;
+            int before[2] = {choice_of(w->d, column, &(int){0}), 0};
+            before[1] = pick[before[0]];
+            if (step_catalogue_value(w, column, other % 2 == 0 ? -1 : 1, pick, &k)) {
                 propose(w, pick);
             }
-            pick[other / 2] = before;
+            pick[before[0]] = before[1];
         }
     }
 }
@@ -227,7 +320,7 @@ mt_status mt_catalogue_search_near(mt_catalogue_search *d, mt_combination ***lis
                                    mt_err *err)
 {
     walk w = {.d = d};
-    const int size = d->n_listed;
+    const int size = d->n_set;
     const int rounds = d->mixed ? ROUNDS_MIXED : ROUNDS;
     int *const pick = mt_arena_int(d->mem, (size_t)size);
     w.all = mt_arena_alloc(d->mem, VISITED_MOST, sizeof(mt_combination *));

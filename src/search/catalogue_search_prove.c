@@ -62,13 +62,24 @@ static bool catalogue_search_shapes(const mt_catalogue_search_proofs *s, int i)
     return false;
 }
 
+/* True where a choice sets a variable that shapes the geometry. */
+static bool choice_shapes(const mt_catalogue_search_proofs *s, const mt_choice *choice)
+{
+    bool shapes = false;
+    for (int i = 0; i < choice->n; i++) {
+        shapes = shapes || catalogue_search_shapes(s, choice->first + i);
+    }
+    return shapes;
+}
+
 /* Number of geometries that the catalogues give. catalogue_search_geometry: bounds of the
  * relaxed problem for geometry `which`: lower[n], upper[n]. */
 static double catalogue_search_geometries(const mt_catalogue_search_proofs *s)
 {
+    const mt_problem *const p = s->c->p;
     double n = 1.0;
-    for (int k = 0; k < s->n_shaping; k++) {
-        n *= (double)s->c->p->study->variables[s->shaping[k]].n_catalogue;
+    for (int k = 0; k < p->n_choices; k++) {
+        n *= choice_shapes(s, &p->choices[k]) ? (double)p->choices[k].n_rows : 1.0;
     }
     return n;
 }
@@ -80,12 +91,14 @@ static void catalogue_search_geometry(const mt_catalogue_search_proofs *s, int w
         lower[i] = s->c->lower[i];
         upper[i] = s->c->upper[i];
     }
-    for (int k = 0; k < s->n_shaping; k++) {
-        const int i = s->shaping[k];
-        const mt_variable *const v = &s->c->p->study->variables[i];
-        lower[i] = v->catalogue[which % v->n_catalogue];
-        upper[i] = lower[i];
-        which /= v->n_catalogue;
+    for (int k = 0; k < s->c->p->n_choices; k++) {
+        const mt_choice *const own = &s->c->p->choices[k];
+        if (choice_shapes(s, own)) {
+            const double *const row = mt_choice_row(own, which % own->n_rows);
+            memcpy(lower + own->first, row, (size_t)own->n * sizeof *lower);
+            memcpy(upper + own->first, row, (size_t)own->n * sizeof *upper);
+            which /= own->n_rows;
+        }
     }
 }
 
@@ -107,6 +120,7 @@ static mt_status use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *
 {
     int *const count = mt_arena_int(mem, (size_t)p->n);
     const double **const values = mt_arena_alloc(mem, (size_t)p->n, sizeof(double *));
+    mt_certify_rows *const rows = mt_arena_alloc(mem, (size_t)p->n_choices, sizeof *rows);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n; i++) {
         count[i] = p->study->variables[i].n_catalogue;
@@ -114,6 +128,14 @@ static mt_status use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *
     }
     proof->question.n_catalogue = count;
     proof->question.catalogue = values;
+    proof->question.rows = rows;
+    for (int k = 0; k < p->n_choices; k++) {
+        const mt_choice *const own = &p->choices[k];
+        if (own->n > 1) {
+            rows[proof->question.n_rows++] =
+                (mt_certify_rows){own->first, own->n, own->n_rows, own->value};
+        }
+    }
     return MT_OK;
 }
 
@@ -291,6 +313,13 @@ typedef struct branching {
     int n_capacity;
 } branching;
 
+/* To the next row of a box that may bound it: of ascending values only the ends do. */
+static int row_step(const mt_choice *choice, const box *b, int k)
+{
+    const int whole = b->last[k] - b->first[k];
+    return choice->n == 1 && whole > 0 ? whole : 1;
+}
+
 /* Values of a box, the others within their bounds. */
 static void bound(const mt_catalogue_search *d, const box *b, double *lower, double *upper)
 {
@@ -299,9 +328,18 @@ static void bound(const mt_catalogue_search *d, const box *b, double *lower, dou
         upper[i] = d->c->upper[i];
     }
     for (int k = 0; k < d->n_listed; k++) {
-        const int i = d->variable[k];
-        lower[i] = d->p->study->variables[i].catalogue[b->first[k]];
-        upper[i] = d->p->study->variables[i].catalogue[b->last[k]];
+        const mt_choice *const own = &d->choice[k];
+        for (int j = 0; j < own->n; j++) {
+            lower[own->first + j] = HUGE_VAL;
+            upper[own->first + j] = -HUGE_VAL;
+        }
+        for (int row = b->first[k]; row <= b->last[k]; row += row_step(own, b, k)) {
+            for (int j = 0; j < own->n; j++) {
+                const int i = own->first + j;
+                lower[i] = fmin(lower[i], mt_choice_row(own, row)[j]);
+                upper[i] = fmax(upper[i], mt_choice_row(own, row)[j]);
+            }
+        }
     }
 }
 
@@ -418,7 +456,7 @@ static mt_status push_all(branching *v, mt_err *err)
                  .last = mt_arena_int(d->mem, (size_t)d->n_listed)};
     MT_TRY(mt_arena_check(d->mem, err));
     for (int k = 0; k < d->n_listed; k++) {
-        whole.last[k] = d->p->study->variables[d->variable[k]].n_catalogue - 1;
+        whole.last[k] = d->choice[k].n_rows - 1;
     }
     return push_box(v, &whole, -1, 0, 0, err);
 }
@@ -431,10 +469,9 @@ static mt_status halve(branching *v, const box *b, mt_err *err)
     int widest = 0;
     double most = -1.0;
     for (int k = 0; k < d->n_listed; k++) {
-        const int values = d->p->study->variables[d->variable[k]].n_catalogue;
+        const int values = d->choice[k].n_rows;
         const int beyond = b->last[k] - b->first[k];
-        const bool first =
-            v->enclosed && catalogue_search_shapes(&v->proofs[0], d->variable[k]);
+        const bool first = v->enclosed && choice_shapes(&v->proofs[0], &d->choice[k]);
         const double share = ((double)beyond / (double)values) + (first ? 1.0 : 0.0);
         if (beyond > 0 && share > most) {
             most = share;
@@ -540,15 +577,13 @@ static mt_status propose(branching *v, const int *pick, const double *x, mt_err 
     return MT_OK;
 }
 
-/* The combination of a design, which is in the box. */
+/* The combination of a design that a certificate met. Its rows may be others than those of the
+ * box, which lie between the same values. */
 static void pick_of(const mt_catalogue_search *d, const box *b, const double *x, int *pick)
 {
     for (int k = 0; k < d->n_listed; k++) {
-        const double *const values = d->p->study->variables[d->variable[k]].catalogue;
-        pick[k] = b->first[k];
-        while (pick[k] < b->last[k] && values[pick[k]] < x[d->variable[k]]) {
-            pick[k]++;
-        }
+        const int row = mt_choice_find(&d->choice[k], x);
+        pick[k] = row == MT_ABSENT ? b->first[k] : row;
     }
 }
 
@@ -793,11 +828,8 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
     mt_combination *c = NULL;
     MT_TRY(mt_catalogue_search_alloc(d, 1, &c, err));
     for (int k = 0; k < d->n_listed; k++) {
-        const mt_variable *const own = &d->p->study->variables[d->variable[k]];
-        while (c->pick[k] + 1 < own->n_catalogue &&
-               own->catalogue[c->pick[k]] < x[d->variable[k]]) {
-            c->pick[k]++;
-        }
+        const int row = mt_choice_find(&d->choice[k], x);
+        c->pick[k] = row == MT_ABSENT ? 0 : row;
     }
     const size_t size = (size_t)d->n_listed * sizeof *c->pick;
     for (int i = 0; i < v->n; i++) {

@@ -1083,10 +1083,13 @@ typedef struct enumeration {
 static void set_combination(const mt_problem *p, int k, double *t)
 {
     int left = k;
-    for (int i = p->n - 1; i >= 0; i--) {
-        const mt_variable *const v = &p->study->variables[i];
-        t[i] = mt_problem_t(p, i, v->catalogue[left % v->n_catalogue]);
-        left /= v->n_catalogue;
+    for (int c = p->n_choices - 1; c >= 0; c--) {
+        const mt_choice *const own = &p->choices[c];
+        const double *const row = mt_choice_row(own, left % own->n_rows);
+        for (int j = 0; j < own->n; j++) {
+            t[own->first + j] = mt_problem_t(p, own->first + j, row[j]);
+        }
+        left /= own->n_rows;
     }
 }
 
@@ -1262,9 +1265,10 @@ mt_status mt_relaxation_catalogue(mt_workspace *const *workers, int n_workers,
     double total = 1.0;
     bool mixed = false;
     for (int i = 0; i < p->n; i++) {
-        const int n = p->study->variables[i].n_catalogue;
-        mixed = mixed || n == 0;
-        total *= n > 0 ? (double)n : 1.0;
+        mixed = mixed || p->study->variables[i].n_catalogue == 0;
+    }
+    for (int k = 0; k < p->n_choices; k++) {
+        total *= (double)p->choices[k].n_rows;
     }
     MT_TRY(relaxation_moves(workers[0]->c, mem, out, err));
     if (mixed) {

@@ -121,6 +121,11 @@ static const mt_key STUDY[] = {
     MT_M_JUST("model", TEXT, true, NONE, "Model file, relative to this file.",
               .examples = "[\"../problems/inceptor.json\"]"),
     MT_M_OBJECT("units", mt_study_units_keys),
+    MT_M_JUST("catalogues", OBJECT, false, NONE,
+              "Parts whose numbers come together, by name: variables take a row of one.",
+              .schema = "\"type\": \"object\", \"propertyNames\": {\"pattern\": "
+                        "\"^[A-Za-z_][A-Za-z0-9_+-]*$\"}, \"additionalProperties\": {\"$ref\": "
+                        "\"#/definitions/parts\"}"),
     MT_M_LIST_OF("variables", mt_study_variable_keys,
                  "What may change. Without variables the study only verifies."),
     MT_M_JUST("goals", LIST, false, NONE, "The goals.",
@@ -183,6 +188,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
                                                  &mt_study_machine_keys,
                                                  &mt_study_gear_keys,
                                                  &mt_study_catalogue_keys,
+                                                 &mt_study_parts_keys,
                                                  &mt_study_trade_keys,
                                                  &mt_study_vary_keys,
                                                  &mt_study_span_keys,
@@ -357,6 +363,8 @@ static void read_study_root(mt_study_reader *s)
         (void)mt_members_read(&s->r, search, &mt_study_search_keys, &study->search);
     }
     ask_search(s);
+    study->catalogues =
+        mt_read_study_catalogues(s, mt_object_value(&o, "catalogues"), &study->n_catalogues);
     study->variables =
         read_list(s, &o, "variables", &mt_study_variable_keys, &study->n_variables);
     mt_read_study_references(s, mt_object_value(&o, "references"),

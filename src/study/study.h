@@ -10,6 +10,7 @@
 #include "measurement/measurement.h"
 #include "model/count_box.h"
 #include "model/model.h"
+#include "study/catalogues.h"
 #include "study/goals.h"
 #include "study/objectives.h"
 #include "study/published.h"
@@ -101,6 +102,7 @@ typedef struct mt_study {
     /* [number of the model's parameters] values at the original design (model/values.h); made
      * by finish where NULL */
     double *original;
+    MT_LIST_OF(mt_catalogue, catalogues); /* of parts */
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
     MT_LIST_OF(mt_reference, references);

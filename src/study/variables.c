@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "study/catalogues.h"
 #include "study/check.h"
 #include "study/reader.h"
 
@@ -212,12 +213,56 @@ static void read_rule(mt_study_reader *s, mt_addr value, mt_variable *v)
     }
 }
 
-/* A list of values, or a rule. */
+/* The parameters of a column: one name, or several. */
+static void add_parameters(mt_reader *r, mt_variable *v, mt_name column, mt_addr value,
+                           int room)
+{
+    mt_items items = mt_reader_one_or_items(r, value);
+    while (mt_items_next(&items)) {
+        const mt_name parameter = mt_reader_ref(r, items.at);
+        if (parameter.s != NULL && v->columns.count < room) {
+            v->columns.items[v->columns.count++] = column;
+            v->parameters.items[v->parameters.count++] = parameter;
+        }
+    }
+}
+
+/* Names in the order of the columns, or an object of columns and their parameters. */
+static void read_parameters(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_variable *const v = item;
+    int room = 0;
+    (void)key;
+    v->by_order = mt_json_type_of(r->doc, value) == MT_JSON_ARRAY;
+    for (mt_items items = mt_reader_items(r, value); mt_items_next(&items);) {
+        mt_items inner = mt_reader_one_or_items(r, items.at);
+        room += inner.count;
+    }
+    v->columns.items = mt_arena_alloc(r->mem, (size_t)room, sizeof *v->columns.items);
+    v->parameters.items = mt_arena_alloc(r->mem, (size_t)room, sizeof *v->parameters.items);
+    if (mt_arena_failed(r->mem)) {
+        return;
+    }
+    if (room == 0) {
+        mt_diag_error(r->diags, value, "no parameter is named");
+    }
+    for (mt_items items = mt_reader_items(r, value); mt_items_next(&items);) {
+        const mt_name column = {.s = v->by_order ? NULL : mt_json_name(r->doc, items.at),
+                                .addr = items.at};
+        add_parameters(r, v, column, items.at, room);
+    }
+}
+
+/* A list of values, a rule, or the name of a catalogue of parts. */
 static void read_catalogue(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     mt_study_reader *const s = mt_study_reader_of(r);
     mt_variable *const v = item;
     (void)key;
+    if (mt_json_type_of(r->doc, value) == MT_JSON_STRING) {
+        v->catalogue_name = mt_reader_ref(r, value);
+        return;
+    }
     if (mt_json_type_of(r->doc, value) == MT_JSON_OBJECT) {
         read_rule(s, value, v);
         return;
@@ -248,24 +293,61 @@ static void variable_defaults(void *item, mt_addr addr, int which)
     };
 }
 
+/* What goes with a catalogue of parts, and what does not. */
+static void variable_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    static const char *const others[] = {"lower", "upper", "scale"};
+    mt_variable *const v = item;
+    const bool rows = v->catalogue_name.s != NULL;
+    if (which == 1 && !rows && !mt_object_wrong(r, o)) {
+        mt_diag_error(r->diags, mt_object_place(r, o, "catalogue"),
+                      "\"parameters\" go with the name of one of the study's \"catalogues\"");
+    }
+    if (which == 0 && rows) {
+        mt_diag_error(r->diags, v->catalogue_name.addr,
+                      "the rows of a catalogue set \"parameters\"; the values of one "
+                      "\"parameter\" are a list, or a rule");
+        v->catalogue_name.s = NULL;
+    }
+    for (int i = 0; i < MT_COUNT(others) && which == 1; i++) {
+        if (mt_object_has(r, o, others[i])) {
+            mt_diag_error(r->diags, mt_object_place(r, o, others[i]),
+                          "\"%s\" goes with a single \"parameter\"", others[i]);
+        }
+    }
+}
+
 #define THIS mt_variable
 static const mt_key VARIABLE[] = {
-    MT_M_REF("parameter", true, parameter_name, "Name of a parameter of the model."),
+    MT_M_REF("parameter", false, parameter_name, "Name of a parameter of the model."),
+    {.name = "parameters",
+     .type = MT_KEY_LIST_OR_OBJECT,
+     .read = read_parameters,
+     .says = "Parameters that a row of a catalogue sets together: an object of columns and the "
+             "parameter that each sets, or a list of several; or a list of parameters in the "
+             "order of the columns.",
+     .examples = "[{\"D\": \"d_1\", \"t\": \"wall_1\"}, [\"d_1\", \"wall_1\"], {\"D\": "
+                 "[\"d_1\", \"d_2\"], \"t\": [\"wall_1\", \"wall_2\"]}]",
+     .schema = "\"anyOf\": [{\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": "
+               "\"string\"}}, {\"type\": \"object\", \"minProperties\": 1, "
+               "\"additionalProperties\": {\"anyOf\": [{\"type\": \"string\"}, {\"type\": "
+               "\"array\", \"minItems\": 1, \"items\": {\"type\": \"string\"}}]}}]"},
     MT_S_VALUE("lower", false, lower, parameter_name, BOUND,
                "Lower bound, in the unit of the parameter. Goes with \"upper\"."),
     MT_S_VALUE("upper", false, upper, parameter_name, BOUND,
                "Upper bound, in the unit of the parameter. Goes with \"lower\"."),
     {.name = "catalogue",
-     .type = MT_KEY_LIST_OR_OBJECT,
+     .type = MT_KEY_TEXT_LIST_OR_OBJECT,
      .possible = MT_POSSIBLE_VALUES,
      .read = read_catalogue,
      .says = "The values that can be had, in the unit of the parameter, instead of bounds: a "
-             "list, or a rule.",
+             "list, or a rule. With \"parameters\": the name of one of the study's "
+             "\"catalogues\", of which a row is taken.",
      .examples =
          "[[5000, 8000, 10000], {\"series\": \"E24\", \"lower\": 1000, \"upper\": 100000}]",
-     .schema = "\"if\": {\"type\": \"array\"}, \"then\": {\"minItems\": 1, \"items\": "
-               "{\"$ref\": \"#/definitions/number\"}}, \"else\": {\"$ref\": "
-               "\"#/definitions/catalogue\"}, \"type\": [\"array\", \"object\"]"},
+     .schema = "\"anyOf\": [{\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "
+               "\"#/definitions/number\"}}, {\"$ref\": \"#/definitions/catalogue\"}, "
+               "{\"type\": \"string\"}]"},
     MT_S_NUMBER("weight", false, weight, POSITIVE,
                 "Weight of this variable in the size of a change (no unit), above 0.",
                 .otherwise = "1"),
@@ -287,11 +369,15 @@ const mt_key_table mt_study_variable_keys = {
     .what = "variable",
     .keys = VARIABLE,
     .n = MT_COUNT(VARIABLE),
+    .one_of = 2,
     .size = sizeof(mt_variable),
     .defaults = variable_defaults,
+    .finish = variable_finish,
     .says = "A parameter that the study may change: within two bounds, or to an entry of a "
-            "catalogue.",
-    .examples = "[{\"parameter\": \"K_T1\", \"lower\": 1000, \"upper\": 100000}]"};
+            "catalogue; or several that a row of a catalogue of parts sets together.",
+    .examples = "[{\"parameter\": \"K_T1\", \"lower\": 1000, \"upper\": 100000}, "
+                "{\"catalogue\": \"tube\", \"parameters\": {\"D\": \"d_1\", \"t\": "
+                "\"wall_1\"}}]"};
 
 /* Checks */
 
@@ -327,7 +413,7 @@ static void check_range(mt_study_check *c, mt_variable *v)
     const bool upper = mt_check_given(c, v->upper, v->addr, "upper");
     const bool catalogue =
         v->n_catalogue > 0 || mt_diag_member(c->diags, v->addr, "catalogue") != v->addr;
-    if (catalogue && (lower || upper)) {
+    if (v->rows == NULL && catalogue && (lower || upper)) {
         mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "catalogue"),
                       "a variable has either a catalogue or bounds, not both");
         return;
@@ -373,6 +459,7 @@ void mt_study_check_variables(mt_study_check *c)
 {
     mt_study *const s = c->study;
     int *const first = mt_arena_int(&s->mem, (size_t)c->model->n_parameters);
+    mt_study_check_rows(c);
     if (first == NULL) {
         return;
     }

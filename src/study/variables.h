@@ -5,14 +5,31 @@
 #include "io/members.h"
 #include "model/model.h"
 
+/* Rows of which one is taken: the n variables that share them, neighbours in the study, are
+ * set together. */
+typedef struct mt_catalogue_rows {
+    const char *catalogue; /* its name */
+    int n;
+    int n_rows;
+    const double *value;      /* [n_rows x n] in ascending order, by the first column first */
+    const int *number;        /* [n_rows] in the catalogue, from 1 */
+    const char *const *names; /* [n_rows]; NULL: they have none */
+} mt_catalogue_rows;
+
 typedef struct mt_variable {
     mt_name parameter_name;
     int parameter;
     double lower; /* continuous: both bounds are required, lower < upper */
     double upper;
     int n_catalogue;   /* > 0: discrete */
-    double *catalogue; /* ascending after finish */
-    double weight;     /* weight of its change in the total change; default 1 */
+    double *catalogue; /* ascending after finish; of rows the different values of the column */
+    mt_name catalogue_name;  /* as read: takes rows of it, until finish */
+    mt_name_list columns;    /* as read: its columns, and the parameters that these set */
+    mt_name_list parameters; /* as many; by_order: columns in the order of the catalogue */
+    bool by_order;
+    const mt_catalogue_rows *rows; /* by finish; NULL: its values stand alone */
+    int column;                    /* of rows */
+    double weight;                 /* weight of its change in the total change; default 1 */
     /* scale of its change, (new - original)/scale; NaN: ln(new/original), or range */
     double scale;
     double range; /* scale of its change where the change has no logarithm; by finish */
@@ -22,8 +39,10 @@ typedef struct mt_variable {
     mt_addr addr;
 } mt_variable;
 
-/* Catalogues of values given by a rule instead of a list. */
+/* Values of a catalogue, and of one that a rule gives instead of a list. */
 enum { MT_MAX_CATALOGUE = 10000 };
+/* Parameters that one row sets. */
+enum { MT_MAX_ROW_VARIABLES = 64 };
 
 /* Preferred numbers of IEC 60063. */
 #define MT_SERIES_LIST(X) \

@@ -50,6 +50,8 @@ static const struct beside {
     {"variable", "catalogue", 1, MT_SEVERITY_ERROR, "4", "5", "lists 4 twice"},
     {"variable", "tolerance_percent", 0, MT_SEVERITY_WARNING, "0.05", "0.1",
      "no spring or damper is made so exactly; is 5 % meant?"},
+    {"parts", "rows", 4, MT_SEVERITY_ERROR, "1000", "500", "are the same"},
+    {"parts", "tolerance_percent", 0, MT_SEVERITY_ERROR, "100", "5", "below 100"},
     {"catalogue", "lower", 0, MT_SEVERITY_ERROR, "5", "1", "is below lower"},
     {"catalogue", "upper", 0, MT_SEVERITY_ERROR, "0.1", "2", "is below lower"},
     {"vary", "values", 0, MT_SEVERITY_ERROR, "0.5", "9", "is not above the lower bound"},

@@ -37,7 +37,7 @@ def _counterexamples(run):
     """Feasible designs found by brute force, with their cost: of the samples, and ends of local searches."""
     if run.found is None:
         q = run.question
-        if all(v.values is not None for v in q.variables) and math.prod(len(v.values) for v in q.variables) <= ENUMERATED:
+        if all(v.values is not None for v in q.variables) and math.prod(len(rows) for _, rows in q.choices) <= ENUMERATED:
             x = search.combinations(q)
             missed = q.missed_robustly(x)
             run.found = x[missed <= SURE], q.cost(x[missed <= SURE])

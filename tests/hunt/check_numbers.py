@@ -38,8 +38,12 @@ def all_designs(result):
 
 
 def bounds(run):
-    """Exactly within the bounds, a value of the catalogue, and at_bound says so."""
+    """Exactly within the bounds, a value or a row of the catalogue, and at_bound says so."""
     for rec in run.result["recommendations"]:
+        design = np.array([p["recommended"] for p in rec["parameters"]], float)
+        for first, rows in run.question.choices:
+            if not np.any(np.all(rows == design[first:first + rows.shape[1]], axis=1)):
+                yield f"rank {rec['rank']}: {design.tolist()} is no row of the catalogue from variable {first} on"
         for p, v in zip(rec["parameters"], run.question.variables):
             x = p["recommended"]
             if v.values is not None and not np.any(v.values == x):

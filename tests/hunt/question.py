@@ -101,11 +101,34 @@ def _mode(modes, index):
     return modes[:, index - 1] if index <= modes.shape[1] else np.full(len(modes), np.nan)
 
 
+def settled(study):
+    """The variables one by one, and what is chosen at once: (index of the first, [rows, variables])."""
+    items, choices = [], []
+    for item in study.get("variables", []):
+        first = len(items)
+        if "parameters" in item:
+            table = study["catalogues"][item["catalogue"]]
+            given = item["parameters"]
+            pairs = list(zip(table["columns"], given)) if isinstance(given, list) else [
+                (c, p) for c, several in given.items() for p in (several if isinstance(several, list) else [several])]
+            rows = np.array([[row[table["columns"].index(c)] for c, _ in pairs] for row in table["rows"]], float)
+            rest = {k: v for k, v in item.items() if k not in ("parameters", "catalogue")}
+            items += [{**rest, "parameter": p, "catalogue": sorted(set(rows[:, k]))} for k, (_, p) in enumerate(pairs)]
+            choices.append((first, np.unique(rows, axis=0)))
+        else:
+            items.append(item)
+            choices.append((first, None))
+    return items, choices
+
+
 class Question:
     def __init__(self, model, study, positions=POSITIONS):
         self.model, self.study, self.plant, self.positions = model, study, Plant(model), positions
-        self.variables = [Variable(v, self.plant.original[v["parameter"]]) for v in study.get("variables", [])]
+        items, choices = settled(study)
+        self.variables = [Variable(v, self.plant.original[v["parameter"]]) for v in items]
         self.n = len(self.variables)
+        self.choices = [(first, self.variables[first].values[:, None] if rows is None else rows) for first, rows in choices
+                        if rows is not None or self.variables[first].values is not None]
         self.lower = np.array([v.lower for v in self.variables])
         self.upper = np.array([v.upper for v in self.variables])
         self.origin = np.array([v.original for v in self.variables])

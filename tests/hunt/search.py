@@ -28,15 +28,17 @@ def samples(question, count):
     if question.n <= 8:
         points = np.concatenate([np.array(list(itertools.product(*zip(lower, upper)))), points])
     x = question.x(points)
-    for i, variable in enumerate(question.variables):
-        if variable.values is not None:
-            x[:, i] = variable.values[np.abs(variable.values[None, :] - x[:, [i]]).argmin(axis=1)]
+    for first, rows in question.choices:
+        own = slice(first, first + rows.shape[1])
+        span = np.ptp(rows, axis=0)
+        away = np.abs(rows[None, :, :] - x[:, None, own]) / np.where(span > 0.0, span, 1.0)
+        x[:, own] = rows[away.sum(axis=2).argmin(axis=1)]
     return x
 
 
 def combinations(question):
     """All designs of catalogues alone."""
-    return np.array(list(itertools.product(*[v.values for v in question.variables])), dtype=float)
+    return np.array([np.concatenate(rows) for rows in itertools.product(*[rows for _, rows in question.choices])], dtype=float)
 
 
 class Local:

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random questions asked of a model. Demands are taken from a design within the bounds (then there is an answer) or moved away from it."""
+import itertools
+import math
+
 import numpy as np
 
 import models
@@ -251,6 +254,38 @@ def branched(rng):
     return model, _study(model, variables, goals, _objective(rng, model, variables))
 
 
+def rows(rng):
+    """Catalogues of parts: variables of the kinds above are chosen together, by rows."""
+    maker, few = rng.choice([(catalogue, 40), (catalogue, 40), (mixed, 12), (branched, 500)])
+    model, study = maker(rng)
+    while not any("catalogue" in v for v in study["variables"]):
+        model, study = maker(rng)
+    items = [v for v in study["variables"] if "catalogue" in v]
+    rest = [v for v in study["variables"] if "catalogue" not in v]
+    rng.shuffle(items)
+    middle = rng.randint(0, len(items) - 1)
+    tables, chosen = {}, []
+    for group in [g for g in (items[:middle], items[middle:]) if g]:
+        values = [g["catalogue"] for g in group]
+        every = list(itertools.product(*values)) if math.prod(map(len, values)) <= 5000 else [
+            tuple(rng.choice(v) for v in values) for _ in range(5000)]
+        every = list(dict.fromkeys(every))
+        picked = rng.sample(every, min(len(every), rng.randint(2, few) if maker is not branched else few))
+        name, columns = f"part_{len(tables)}", [f"c{i}" for i in range(len(group))]
+        parameters = [g["parameter"] for g in group]
+        tables[name] = {"columns": columns, "rows": [list(row) for row in picked]}
+        if rng.random() < 0.5:  # a column that nobody reads
+            tables[name] = {"columns": ["price", *columns], "rows": [[i, *row] for i, row in enumerate(picked)]}
+        if rng.random() < 0.5:
+            tables[name]["names"] = [f"no. {i}" for i in range(len(picked))]
+        by_order = rng.random() < 0.5 and tables[name]["columns"] == columns
+        chosen.append({"catalogue": name, "parameters": parameters if by_order else dict(zip(columns, parameters))})
+        if "weight" in group[0] and rng.random() < 0.5:
+            chosen[-1]["weight"] = group[0]["weight"]
+    study["catalogues"], study["variables"] = tables, rng.sample(chosen + rest, len(chosen + rest))
+    return model, study
+
+
 def _without_kinks(rng, model):
     """min and max put the worst between the corners, where brute force does not look."""
     for item in model["bodies"] + model.get("springs", []):
@@ -363,4 +398,4 @@ def zero(rng):
     return model, _study(model, variables, goals)
 
 
-KINDS = {f.__name__: f for f in (targets, limits, pairs, corner, bands, catalogue, mixed, branched, tolerance, trade, misfit, driven, infeasible, zero)}
+KINDS = {f.__name__: f for f in (targets, limits, pairs, corner, bands, catalogue, mixed, branched, rows, tolerance, trade, misfit, driven, infeasible, zero)}

@@ -55,7 +55,7 @@ static mt_study *load_text(mt_test *t, const char *members, mt_diagnostics *mess
 
 static void check_variables(mt_test *t, const mt_study *s)
 {
-    if (!CHECK_INT(t, s->n_variables, 3)) {
+    if (!CHECK_INT(t, s->n_variables, 4)) {
         return;
     }
     const mt_variable *const v = s->variables;
@@ -76,6 +76,20 @@ static void check_variables(mt_test *t, const mt_study *s)
     CHECK(t, !MT_HAS(v[1].tolerance_percent));
     CHECK_NEAR(t, v[2].upper, 0.17453292519943295, TOL);
     CHECK_NEAR_ABS(t, v[2].original, 0.0, 0.0);
+    CHECK_INT(t, v[3].parameter, mt_model_find_parameter(s->model, "m"));
+    if (CHECK_INT(t, v[3].n_catalogue, 3) && CHECK(t, v[3].rows != NULL)) {
+        CHECK_NEAR(t, v[3].catalogue[0], 0.5, TOL);
+        CHECK_NEAR(t, v[3].rows->value[1], 1.0, TOL);
+        CHECK_STR(t, v[3].rows->names[0], "W500");
+        CHECK_INT(t, v[3].rows->number[0], 3);
+        CHECK_NEAR(t, v[3].tolerance_percent, 1.0, TOL);
+    }
+    if (CHECK_INT(t, s->n_catalogues, 2) && CHECK_INT(t, s->catalogues[1].n_rows, 2)) {
+        CHECK_STR(t, s->catalogues[1].columns.items[0].s, "mass");
+        CHECK_STR(t, s->catalogues[1].units.items[0].s, "g");
+        CHECK_NEAR(t, s->catalogues[1].number[3], 2.5, TOL);
+        CHECK_STR(t, s->catalogues[1].names.items[1].s, "W500");
+    }
 }
 
 static void check_energy_goals(mt_test *t, const mt_study *s)
@@ -312,10 +326,11 @@ static void study__inputs_are_listed_with_their_digests(mt_test *t)
 {
     mt_study *const s = load(t, FULL);
     REQUIRE(t, s != NULL);
-    if (CHECK_INT(t, s->n_inputs, 4)) {
+    if (CHECK_INT(t, s->n_inputs, 5)) {
         CHECK_STR(t, s->inputs[0].name, "study_full.json");
         CHECK_STR(t, s->inputs[1].name, "../wrong/parts/model.json");
-        CHECK_STR(t, s->inputs[2].name, "../wrong/parts/measured.csv");
+        CHECK_STR(t, s->inputs[2].name, "../wrong/parts/weights.csv");
+        CHECK_STR(t, s->inputs[3].name, "../wrong/parts/measured.csv");
         CHECK_STR(t, s->inputs[1].sha256, s->model->sha256);
         CHECK_INT(t, strlen(s->inputs[0].sha256), 64);
     }
