@@ -391,8 +391,9 @@ static void hold_variables(held_file *h, const mt_study *study)
             mt_unit_from_si(v->shown, listed ? v->catalogue[v->n_catalogue - 1] : v->upper);
         item->unit = kept(h, mt_unit_name(v->shown, si));
         if (listed) {
-            item->count = v->n_catalogue;
-            item->text = "values of a catalogue";
+            item->count = v->rows != NULL ? v->rows->n_rows : v->n_catalogue;
+            item->text = v->rows != NULL ? "rows of a catalogue of parts, chosen together"
+                                         : "values of a catalogue";
         }
     }
 }

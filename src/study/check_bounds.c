@@ -6,7 +6,8 @@
  * diameter of 0 or a wall of no thickness is found now, and named with its variable, not as a
  * failure of some evaluation. Looked at are the designs with one variable at a bound and the
  * corners of the box (all 2^n for n <= MOST_ENUMERATED, else the two at which all variables are
- * least or greatest). Designs that a limit of the study forbids do not count.
+ * least or greatest); of variables that take rows of a catalogue together the rows, and in the
+ * corners their first and last. Designs that a limit of the study forbids do not count.
  *
  * A variable that shapes the geometry may take joints out of the redundancy that the mechanism
  * lives on: a tilted hinge of a planar four-bar in space, one crank of a parallelogram with
@@ -15,6 +16,7 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/format.h"
 #include "mechanics/linear.h"
@@ -347,12 +349,70 @@ static void one_variable(corners *k, int i, bool upper)
     k->x[i] = v->original;
 }
 
+/* Operations of a design: numbers of every configuration that counts, parameters for every
+ * limit. */
+static double work_of_one(const corners *k)
+{
+    const mt_study *const s = k->c->study;
+    const mt_model *const m = k->c->model;
+    double each = m->n_parameters;
+    for (int c = 0; c < m->n_configurations; c++) {
+        each += is_asked(s, c) ? (double)m->n_nums : 0.0;
+    }
+    for (int g = 0; g < s->n_goals; g++) {
+        each += s->goals[g].expression_text != NULL ? (double)m->n_parameters : 0.0;
+    }
+    return each;
+}
+
+/* ... and of all. */
+static double count_work(const corners *k)
+{
+    return ((2.0 * k->n) + (double)(1U << MOST_ENUMERATED)) * work_of_one(k);
+}
+
+/* Every row of a catalogue of parts, as rows alone are designs, unless that is too much work;
+ * i: the first of the variables that take one. */
+static void every_row(corners *k, int i)
+{
+    const mt_variable *const v = &k->c->study->variables[i];
+    const mt_catalogue_rows *const rows = v->rows;
+    if ((double)rows->n_rows * work_of_one(k) > MOST_WORK) {
+        return;
+    }
+    for (int row = 0; row < rows->n_rows && k->rc == MT_OK; row++) {
+        mt_warning_list list = mt_warning_list_default(&k->mem);
+        memcpy(k->x + i, rows->value + ((ptrdiff_t)row * rows->n),
+               (size_t)rows->n * sizeof *k->x);
+        if (is_allowed(k)) {
+            lint_corner(k, &list);
+        }
+        for (int d = 0; d < list.n; d++) {
+            if (list.items[d].level == MT_LEVEL_FAULT &&
+                fault_at(&k->told, list.items[d].addr) == NULL) {
+                mt_diag_error(k->c->diags, mt_diag_member(k->c->diags, v->addr, "catalogue"),
+                              "with row %d%s%s of \"%s\", %s", rows->number[row],
+                              rows->names == NULL ? "" : ", ",
+                              rows->names == NULL ? "" : rows->names[row], rows->catalogue,
+                              list.items[d].text);
+                mt_warning_copy(&k->told, &list.items[d]);
+            }
+        }
+    }
+    for (int j = i; j < i + rows->n; j++) {
+        k->x[j] = k->c->study->variables[j].original;
+    }
+}
+
 /* Reset variables that the fault does not need to their original values. */
 static void reset_unneeded_variables(corners *k, mt_addr addr)
 {
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
         mt_warning_list list = mt_warning_list_default(&k->mem);
         const double had = k->x[i];
+        if (k->c->study->variables[i].rows != NULL) {
+            continue; /* the rest of its row would be of no design */
+        }
         k->x[i] = k->c->study->variables[i].original;
         if (is_allowed(k)) {
             lint_corner(k, &list);
@@ -394,9 +454,15 @@ static void go_to_corner(corners *k, unsigned which)
 {
     const mt_study *const s = k->c->study;
     for (int i = 0; i < k->n; i++) {
+        const mt_variable *const v = &s->variables[i];
+        const mt_catalogue_rows *const rows = v->rows;
+        const int bit = i - (rows == NULL ? 0 : v->column); /* the same for all of a row */
         const bool upper =
-            k->n <= MOST_ENUMERATED ? (which >> (unsigned)i & 1U) != 0U : which != 0U;
-        k->x[i] = upper ? s->variables[i].upper : s->variables[i].lower;
+            k->n <= MOST_ENUMERATED ? (which >> (unsigned)bit & 1U) != 0U : which != 0U;
+        k->x[i] = rows != NULL
+                      ? rows->value[((upper ? rows->n_rows - 1 : 0) * rows->n) + v->column]
+                  : upper ? v->upper
+                          : v->lower;
     }
 }
 
@@ -416,23 +482,6 @@ static void one_corner(corners *k, unsigned which)
     }
 }
 
-/* Operations of all designs: numbers of every configuration that counts, parameters for every
- * limit. */
-static double count_work(const corners *k)
-{
-    const mt_study *const s = k->c->study;
-    const mt_model *const m = k->c->model;
-    const double designs = (2.0 * k->n) + (double)(1U << MOST_ENUMERATED);
-    double each = m->n_parameters;
-    for (int c = 0; c < m->n_configurations; c++) {
-        each += is_asked(s, c) ? (double)m->n_nums : 0.0;
-    }
-    for (int g = 0; g < s->n_goals; g++) {
-        each += s->goals[g].expression_text != NULL ? (double)m->n_parameters : 0.0;
-    }
-    return designs * each;
-}
-
 static void look_at_all(corners *k)
 {
     const mt_study *const s = k->c->study;
@@ -443,8 +492,13 @@ static void look_at_all(corners *k)
     }
     k->rc = compile_corner_numbers(k);
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
-        one_variable(k, i, false);
-        one_variable(k, i, true);
+        const mt_variable *const v = &s->variables[i];
+        if (v->rows == NULL) {
+            one_variable(k, i, false);
+            one_variable(k, i, true);
+        } else if (v->column == 0) {
+            every_row(k, i);
+        }
     }
     for (unsigned w = 0; k->n > 1 && w < n_corners && k->rc == MT_OK; w++) {
         one_corner(k, w);

@@ -100,7 +100,7 @@ WRONG = {
     "bands_hz": [(lambda v: [[v[0][1], v[0][0]], *v[1:]], "error", "is not above"), (lambda v: [[-1, v[0][1]], *v[1:]], "error", "negative")],
     ("variable", "lower"): [(beyond("upper", 1), "error", "below lower")], ("variable", "upper"): [(beyond("lower", -1), "error", "below lower")],
     ("variable", "catalogue"): [(lambda v: [*v, v[0]], "error", "twice")],
-    ("parts", "rows"): [(lambda v: [*v, v[0]], "error", "are the same"), (lambda v: [*v, v[0][1:]], "error", "in this row")],
+    ("parts", "rows"): [(lambda v: [*v[:-1], v[0]], "error", "are the same"), (lambda v: [*v[:-1], v[0][1:]], "error", "in this row")],
     ("parts", "tolerance_percent"): [(lambda v: v[1:], "error", "tolerances for"), (lambda v: [100, *v[1:]], "error", "below 100")],
     ("catalogue", "lower"): [(times(1e6), "error", "is below lower")], ("catalogue", "upper"): [(beyond("lower", -1), "error", "is below lower|must be above")],
     ("vary", "values"): [(lambda v: [*v, v[0]], "error", "twice")], "from": [(set_to(1e30), "error", "cannot be|is not|unit|twice")],
