@@ -588,7 +588,7 @@ static int look_at_spring(const mt_linear *lin, mt_term_kind kind, int t, bool *
         }
         /* what is strained where it stands resists across its line, too */
         *acts = *acts || s->preload != MT_NO_NODE || s->free != MT_NO_NODE ||
-                term->source == sys->trim_spring ||
+                mt_system_trim_of(sys, term->source) >= 0 ||
                 (sys->loaded && sys->measures[s->measure[0]].kind == MT_MEASURE_DISTANCE);
         if (mt_linear_value(lin, term->coefficient) == 0.0) {
             continue;
@@ -632,7 +632,7 @@ static void warn_springs(const mt_linear *lin, mt_warning_list *out)
     static const mt_term_kind kinds[] = {MT_TERM_STIFFNESS, MT_TERM_DAMPING};
     const mt_system *const sys = mt_linear_system(lin);
     const mt_model *const m = sys->model;
-    if (sys->driven && !sys->trim) {
+    if (sys->n_drives > sys->n_trims) {
         return;
     }
     for (int k = 0; k < MT_COUNT(kinds); k++) {

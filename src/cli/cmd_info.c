@@ -376,23 +376,20 @@ static void write_sections(writer *w)
     }
 }
 
-static void write_drive(writer *w)
+static void write_drive(writer *w, const mt_drive *d)
 {
-    const mt_drive *const d = &w->m->configurations[w->configuration].drive;
     double v = 0.0;
-    if (!d->given || d->joint == MT_ABSENT || !has_nonzero_value(w, d->position, &v)) {
+    if (d->joint == MT_ABSENT || !has_nonzero_value(w, d->position, &v)) {
         return;
     }
     const pair of = pair_of(w, d->joint, NULL);
     const char *const way = d->position_is_angle ? v > 0.0 ? rotation_sense(w) : about(w)
                             : v > 0.0 ? "along the axis"
                                                  : "against the axis";
-    const mt_configuration *owner = &w->m->configurations[w->configuration];
-    while (owner->drive.inherited && owner->like != MT_ABSENT) {
-        owner = &w->m->configurations[owner->like];
-    }
-    const subject at = {mt_arena_printf(w->out->mem, "/configurations/%s/drive/%s",
-                                        owner->name.s,
+    const char *const owner = w->m->configurations[d->owner].name.s;
+    const char *const item = d->item < 0 ? "" : mt_arena_printf(w->out->mem, "%d/", d->item);
+    const subject at = {mt_arena_printf(w->out->mem, "/configurations/%s/drive/%s%s", owner,
+                                        item,
                                         d->position_is_angle ? "position_rad" : "position_m"),
                         -1, NULL, v, of};
     add_convention(w, &at, "drive: \"%s\" stands %g %s %s against \"%s\", from the drawing",
@@ -405,7 +402,10 @@ static void cli_find_conventions(const mt_model *model, int configuration, const
                                  convention_list *out)
 {
     writer w = {.m = model, .configuration = configuration, .value = value, .out = out};
-    write_drive(&w);
+    const mt_configuration *const own = &model->configurations[configuration];
+    for (int i = 0; i < own->n_drives; i++) {
+        write_drive(&w, &own->drives[i]);
+    }
     write_compliances(&w);
     write_inertia_axes(&w);
     write_products(&w);

@@ -230,12 +230,12 @@ static bool is_joint(const mt_model *model, const char *name)
     return dot != NULL && dot[1] == 'h' && dot[2] >= '0' && dot[2] <= '9';
 }
 
-/* The name of the joint that --input, --sine or --sine-sweep moves; NULL: none. Fails:
- * MT_E_USAGE (two), MT_E_MEMORY. */
-static mt_status sim_moved_joint(const mt_args *args, const mt_model *model, mt_arena *mem,
-                                 const char **name, mt_err *err)
+/* The joints that --input, --sine or --sine-sweep moves. Fails: MT_E_USAGE (too many),
+ * MT_E_MEMORY. */
+static mt_status sim_moved_joints(const mt_args *args, const mt_model *model, mt_arena *mem,
+                                  mt_system_drive drives[MT_DRIVES_MOST], int *n, mt_err *err)
 {
-    *name = NULL;
+    *n = 0;
     for (int i = 0; i < args->n_repeats; i++) {
         const char *joint = "";
         const char *rest = "";
@@ -246,13 +246,17 @@ static mt_status sim_moved_joint(const mt_args *args, const mt_model *model, mt_
         if (!is_joint(model, joint)) {
             continue;
         }
-        if (*name != NULL && strcmp(*name, joint) != 0) {
-            return mt_fail(err, MT_E_USAGE,
-                           "--%s: one joint can be moved, \"%s\" already is, \"%s\" would be "
-                           "the second",
-                           option_name(args->repeats[i].option), *name, joint);
+        bool known = false;
+        for (int k = 0; k < *n; k++) {
+            known = known || strcmp(drives[k].joint, joint) == 0;
         }
-        *name = joint;
+        if (!known && *n == MT_DRIVES_MOST) {
+            return mt_fail(err, MT_E_USAGE, "--%s: at most %d joints can be moved",
+                           option_name(args->repeats[i].option), (int)MT_DRIVES_MOST);
+        }
+        if (!known) {
+            drives[(*n)++] = (mt_system_drive){.joint = joint, .fixed = true};
+        }
     }
     return MT_OK;
 }
@@ -335,8 +339,9 @@ static mt_status find_port(const mt_system *sys, mt_option_id option, const char
         return MT_OK;
     }
     const int joint = mt_system_find_joint(sys, name);
-    if (joint >= 0 && sys->driven && joint == sys->drive_joint && !sys->trim) {
-        *out = (input_port){.push = MT_SIM_MOVE, .joint = joint};
+    const int drive = joint >= 0 ? mt_system_drive_of(sys, joint) : -1;
+    if (drive >= 0 && sys->drives[drive].spring < 0) {
+        *out = (input_port){.push = MT_SIM_MOVE, .at = drive, .joint = joint};
         return MT_OK;
     }
     return no_such_port(sys, option, name, true, true, mem, err);
@@ -1155,13 +1160,14 @@ static mt_status choose_moving_configuration(const mt_loaded_model *s, int *c, m
 static mt_status make_driven_system(job *j, mt_err *err)
 {
     mt_loaded_model *const s = j->s;
-    mt_system_drive drive = {.fixed = true};
-    bool given = false;
-    MT_TRY(sim_moved_joint(j->args, s->model, &s->mem, &drive.joint, err));
-    if (drive.joint != NULL) {
-        MT_TRY(sim_start_of(j->args, s, drive.joint, &given, &drive.position, err));
+    mt_system_drive drives[MT_DRIVES_MOST];
+    int n = 0;
+    MT_TRY(sim_moved_joints(j->args, s->model, &s->mem, drives, &n, err));
+    for (int i = 0; i < n; i++) {
+        bool given = false;
+        MT_TRY(sim_start_of(j->args, s, drives[i].joint, &given, &drives[i].position, err));
     }
-    if (j->args->given[MT_OPT_START_MODE] && drive.joint != NULL) {
+    if (j->args->given[MT_OPT_START_MODE] && n > 0) {
         return mt_fail(
             err, MT_E_USAGE,
             "--start-mode excludes --start and --rate: it starts a motion in which no "
@@ -1173,9 +1179,10 @@ static mt_status make_driven_system(job *j, mt_err *err)
         j->lin = j->a->lin;
         return MT_OK;
     }
-    mt_loaded_model_warn_dropped(s, j->c, "--input", drive.joint);
+    mt_loaded_model_warn_dropped(s, j->c, "--input", n, drives);
     mt_system_def def = mt_loaded_model_system(s, j->c, s->n_inputs, s->inputs, s->at);
-    def.drive = drive.joint == NULL ? NULL : &drive;
+    def.drive = n > 0 ? drives : NULL;
+    def.n_drives = n;
     MT_TRY(mt_system_new_of(&def, &j->sys, err));
     MT_TRY(mt_linear_new(j->sys, &j->lin, err));
     return mt_linear_update(j->lin, s->at, false, err);
@@ -1248,16 +1255,17 @@ static mt_status start_along(job *j, mt_err *err)
 static mt_status set_start_state(job *j, mt_err *err)
 {
     const sim_request *const r = &j->request;
-    const int d = j->sys->driven && !j->sys->trim ? j->sys->drive_joint : -1;
-    double drive = 0.0;
+    const mt_system *const sys = j->sys;
+    double drive[MT_DRIVES_MOST] = {0.0};
     int n = 0;
     MT_TRY(mt_start_rest(j->lin, &j->mem, &j->start, err));
-    for (int i = 0; i < r->n_starts; i++) { /* the drive is where it starts already */
-        if (r->starts[i].joint != d) {
+    for (int i = 0; i < r->n_starts; i++) { /* a drive is where it starts already */
+        const int d = mt_system_drive_of(sys, r->starts[i].joint);
+        if (d < 0 || sys->drives[d].spring >= 0) {
             r->starts[n++] = r->starts[i];
         }
     }
-    if (n == 1 && !j->sys->driven) {
+    if (n == 1 && !sys->driven) {
         MT_TRY(start_held(j, &r->starts[0], err));
     } else if (n > 0) {
         MT_TRY(mt_err_in(err, mt_start_joints(j->lin, n, r->starts, &j->mem, &j->start, err),
@@ -1270,7 +1278,7 @@ static mt_status set_start_state(job *j, mt_err *err)
         if (r->opt.inputs[i].push == MT_SIM_MOVE) {
             double value[3] = {0.0, 0.0, 0.0};
             MT_TRY(mt_signal_eval(r->opt.inputs[i].signal, 0.0, value, err));
-            drive += value[1];
+            drive[r->opt.inputs[i].at] += value[1];
         }
     }
     return mt_err_in(

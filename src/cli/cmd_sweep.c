@@ -50,7 +50,8 @@ static double shown_ratio(const mt_sweep_view *v, bool angle, double ratio)
 /* Joints with a coordinate, other than the driven one. */
 static bool told(const mt_sweep_view *v, int joint)
 {
-    return v->sys->joints[joint].coordinate >= 0 && joint != v->sys->drive_joint;
+    return v->sys->joints[joint].coordinate >= 0 &&
+           &v->sys->joints[joint] != mt_sweep_driven(v);
 }
 
 static void text_columns(const mt_sweep_view *v, mt_table *t)
@@ -74,7 +75,8 @@ static void text_columns(const mt_sweep_view *v, mt_table *t)
         }
         mt_table_column(t, s, "ratio", MT_ALIGN_POINT);
     }
-    (void)mt_snprintf(s, sizeof s, "%s [%s]", v->sys->trim ? v->question->drive.spring : "lock",
+    (void)mt_snprintf(s, sizeof s, "%s [%s]",
+                      v->question->drive.spring != NULL ? v->question->drive.spring : "lock",
                       mt_sweep_holds_moment(v) ? "N m" : "N");
     mt_table_column(t, s, "hold", MT_ALIGN_POINT);
     for (int i = 0; i < v->modes; i++) {
@@ -87,7 +89,8 @@ static void text_row(const mt_sweep_view *v, int point, mt_table *t)
 {
     const mt_sweep_point *const p = &v->sweep.points[point];
     mt_table_number(
-        t, mt_unit_from_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), p->drive), DIGITS);
+        t, mt_unit_from_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), p->drive[0]),
+        DIGITS);
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const bool angle = v->sys->joints[i].angle;
@@ -95,7 +98,7 @@ static void text_row(const mt_sweep_view *v, int point, mt_table *t)
             mt_table_number(t, shown_ratio(v, angle, p->ratio[i]), DIGITS);
         }
     }
-    mt_table_number(t, tidy(p->hold), HOLD_DIGITS);
+    mt_table_number(t, tidy(p->hold[0]), HOLD_DIGITS);
     for (int i = 0; i < v->modes; i++) {
         mt_table_number(t, v->hz[i + ((ptrdiff_t)point * v->modes)], DIGITS);
     }
@@ -157,7 +160,7 @@ static void write_dead_centre(const mt_sweep_view *v, mt_text *out)
             out,
             "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
             "joints %s depend on each other.\n",
-            mt_unit_from_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), nearest->drive),
+            mt_unit_from_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), nearest->drive[0]),
             shown_name(v, mt_sweep_driven(v)->angle), nearest->near->distance,
             nearest->near->joints.text);
     }
@@ -325,8 +328,7 @@ static void warn_range(const mt_sweep_view *v)
     for (int i = 0; i < r->n; i++) {
         most = fabs(r->positions[i]) > fabs(most) ? r->positions[i] : most;
     }
-    if (v->sys->drive_joint >= 0 && v->sys->joints[v->sys->drive_joint].angle &&
-        fabs(most) > ONE_TURN) {
+    if (mt_sweep_driven(v)->angle && fabs(most) > ONE_TURN) {
         mt_terminal_warning("--drive: %s goes to %g rad, more than a turn: degrees are written "
                             "\"%g*deg\"",
                             r->drive.joint, most, most);
@@ -338,7 +340,7 @@ static mt_status show_configuration_sweep(void *context, mt_loaded_model *s, int
 {
     sink *const to = context;
     mt_sweep_view v = {.question = NULL};
-    mt_loaded_model_warn_dropped(s, c, "--drive", to->question.drive.joint);
+    mt_loaded_model_warn_dropped(s, c, "--drive", 1, &to->question.drive);
     mt_status rc = mt_sweep_view_take(s, c, &to->question, &v, err);
     if (rc != MT_E_USAGE) {
         (void)mt_err_in(err, rc, "%s", s->path);

@@ -54,15 +54,30 @@ void mt_loaded_model_note_links(const mt_loaded_model *s, int c, mt_text *out)
     mt_arena_free(&mem);
 }
 
-void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *option,
-                                  const char *joint)
+void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *option, int n,
+                                  const mt_system_drive *drives)
 {
     const mt_configuration *const conf = &s->model->configurations[c];
-    const char *const own = conf->drive.given ? conf->drive.joint_name.s : NULL;
-    if (own != NULL && joint != NULL && strcmp(own, joint) != 0) {
-        mt_terminal_warning("%s: configuration \"%s\" drives \"%s\", which is dropped while "
-                            "\"%s\" is driven: \"%s\" is free and stands as it settles",
-                            option, conf->name.s, own, joint, own);
+    const char *stranger = NULL; /* a joint that the configuration does not drive */
+    for (int i = 0; i < n && stranger == NULL; i++) {
+        bool own = false;
+        for (int k = 0; k < conf->n_drives; k++) {
+            own = own || strcmp(conf->drives[k].joint_name.s, drives[i].joint) == 0;
+        }
+        stranger = own ? NULL : drives[i].joint;
+    }
+    for (int k = 0; k < conf->n_drives && stranger != NULL; k++) {
+        const char *const own = conf->drives[k].joint_name.s;
+        bool driven = false;
+        for (int i = 0; i < n; i++) {
+            driven = driven || strcmp(own, drives[i].joint) == 0;
+        }
+        if (!driven) {
+            mt_terminal_warning(
+                "%s: configuration \"%s\" drives \"%s\", which is dropped while "
+                "\"%s\" is driven: \"%s\" is free and stands as it settles",
+                option, conf->name.s, own, stranger, own);
+        }
     }
 }
 

@@ -23,10 +23,10 @@ void mt_loaded_model_warn_overridden(const mt_loaded_model *s, int c);
 /* Append a note about each simplification of links of configuration c, after an answer in
  * text. */
 void mt_loaded_model_note_links(const mt_loaded_model *s, int c, mt_text *out);
-/* Warn where `option` moves another joint than the configuration's drive, which is then
- * dropped: only one joint is driven. */
-void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *option,
-                                  const char *joint);
+/* Warn where `option` drives joints of which the configuration does not drive one: its own
+ * drives of other joints are then dropped (mechanics/system.h: mt_system_drive). */
+void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *option, int n,
+                                  const mt_system_drive *drives);
 /* Close a JSON output. Returns MT_EXIT_DONE, or reports a failure and returns its exit
  * status. */
 int mt_cli_json_done(mt_json_writer *w);

@@ -560,8 +560,8 @@ static mt_status describe_drive_positions(mt_workspace *fresh, const mt_drive_po
     MT_TRY(examine_named_positions(&d, err));
     *room = fmin(*room, d.room);
     for (int k = 0; k < f->n; k++) {
-        from = fmin(from, mt_drive_positions_position(fresh->views[f->view[k]].analysis));
-        to = fmax(to, mt_drive_positions_position(fresh->views[f->view[k]].analysis));
+        from = fmin(from, mt_drive_positions_position(f, fresh->views[f->view[k]].analysis));
+        to = fmax(to, mt_drive_positions_position(f, fresh->views[f->view[k]].analysis));
     }
     if (d.followed && d.motion.end == MT_MOTION_NONE) {
         return MT_OK; /* no band is asked for on both sides of a motion */

@@ -101,8 +101,9 @@ static mt_status prepare_modes(mt_sweep_view *v, int wanted, mt_err *err)
 /* The range of the command line lies within reach of the joint. */
 static mt_status check_reach(const mt_system *sys, const mt_sweep_question *r, mt_err *err)
 {
-    const double reach = mt_drive_reach(sys, sys->drive_joint);
-    const mt_dimension of = sys->joints[sys->drive_joint].angle ? MT_ANGLE : MT_LENGTH;
+    const int joint = mt_system_find_joint(sys, r->drive.joint);
+    const double reach = mt_drive_reach(sys, joint);
+    const mt_dimension of = sys->joints[joint].angle ? MT_ANGLE : MT_LENGTH;
     const mt_unit *const shown = mt_model_shown(sys->model, of);
     const char *const unit = mt_unit_name(shown, mt_dimension_si(of));
     for (int i = 0; i < r->n; i++) {
@@ -151,8 +152,9 @@ mt_status mt_sweep_view_take(const mt_loaded_model *s, int c, const mt_sweep_que
     } else {
         MT_TRY(mt_linear_new(v->own_sys, &v->lin, err));
     }
-    const mt_status rc = mt_sweep_run(v->lin, at, q->n, q->positions,
-                                      q->modes > 0 ? &visitor : NULL, &v->mem, &v->sweep, err);
+    const mt_sweep_plan plan = {.n = q->n, .positions = q->positions};
+    const mt_status rc = mt_sweep_run(v->lin, at, &plan, q->modes > 0 ? &visitor : NULL,
+                                      &v->mem, &v->sweep, err);
     return mt_err_in(err, rc, "configuration \"%s\"", v->configuration);
 }
 
@@ -169,17 +171,24 @@ void mt_sweep_view_free(mt_sweep_view *v)
 
 /* Records. */
 
+static const mt_drive_def *drive_def(const mt_sweep_view *v)
+{
+    const int joint = mt_system_find_joint(v->sys, v->question->drive.joint);
+    return &v->sys->drives[mt_system_drive_of(v->sys, joint)];
+}
+
 const mt_system_joint *mt_sweep_driven(const mt_sweep_view *v)
 {
-    return &v->sys->joints[v->sys->drive_joint];
+    return &v->sys->joints[drive_def(v)->joint];
 }
 
 bool mt_sweep_holds_moment(const mt_sweep_view *v)
 {
-    if (!v->sys->trim) {
+    const int spring = drive_def(v)->spring;
+    if (spring < 0) {
         return mt_sweep_driven(v)->angle;
     }
-    const mt_spring_def *const s = &v->sys->springs[v->sys->trim_spring];
+    const mt_spring_def *const s = &v->sys->springs[spring];
     const mt_measure_kind kind = v->sys->measures[s->measure[0]].kind;
     return kind == MT_MEASURE_ANGLE || kind == MT_MEASURE_ROTATION;
 }
@@ -276,15 +285,15 @@ mt_sweep_point_row mt_sweep_point_row_of(const mt_sweep_view *v, int point)
     const bool moment = mt_sweep_holds_moment(v);
     mt_sweep_point_row row = {.turns = turns,
                               .slides = !turns,
-                              .position_rad = p->drive,
-                              .position_m = p->drive,
+                              .position_rad = p->drive[0],
+                              .position_m = p->drive[0],
                               .error = p->why,
                               .failed = !reached,
                               .reached = reached,
                               .holds_moment = reached && moment,
                               .holds_force = reached && !moment,
-                              .hold_n_m = p->hold,
-                              .hold_n = p->hold,
+                              .hold_n_m = p->hold[0],
+                              .hold_n = p->hold[0],
                               .residual = p->residual,
                               .gap_m = p->gap_m,
                               .with_modes = reached && v->rigid != NULL};
@@ -302,8 +311,8 @@ mt_status mt_sweep_put(mt_sweep_view *v, mt_json_writer *w, mt_err *err)
 {
     mt_swept_row row = {.configuration = v->configuration,
                         .joint = mt_sweep_driven(v)->name,
-                        .hold = holds[v->sys->trim ? 1 : 0],
-                        .spring = v->sys->trim ? v->question->drive.spring : NULL,
+                        .hold = holds[drive_def(v)->spring >= 0 ? 1 : 0],
+                        .spring = v->question->drive.spring,
                         .n = v->sweep.n_points};
     row.points = mt_arena_alloc(&v->mem, (size_t)row.n, sizeof *row.points);
     MT_TRY(mt_arena_check(&v->mem, err));

@@ -688,7 +688,7 @@ static mt_status prepare_motion(work *k, int n_outputs, const char *const *outpu
     if (k->own.n_starts > 0) {
         MT_TRY(mt_start_joints(k->lin, k->own.n_starts, starts, &k->mem, &k->start, err));
     }
-    return mt_start_rates(k->lin, k->own.n_rates, rates, 0.0, &k->mem, &k->start, err);
+    return mt_start_rates(k->lin, k->own.n_rates, rates, NULL, &k->mem, &k->start, err);
 }
 
 static mt_status hand_out(const work *k, int room, double *values, mt_motion_told *told,

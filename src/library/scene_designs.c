@@ -188,9 +188,9 @@ static void find_travel(const mt_model *model, const mt_result *result, int n,
                         const int *configurations, mt_scene_travel *travel)
 {
     for (int i = 0; i < n; i++) {
-        const mt_drive *const d = &model->configurations[configurations[i]].drive;
-        if (d->given) {
-            travel[d->joint] = MT_TRAVEL_POSES;
+        const mt_configuration *const c = &model->configurations[configurations[i]];
+        for (int k = 0; k < c->n_drives; k++) {
+            travel[c->drives[k].joint] = MT_TRAVEL_POSES;
         }
     }
     for (int r = 0; r <= result->n_recommendations; r++) {

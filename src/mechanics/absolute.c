@@ -1070,7 +1070,7 @@ static mt_status init_slopes(slope_work *w, const double *inputs, mt_arena *mem,
     w->da = mt_arena_alloc(mem, m, sizeof *w->da);
     w->c = mt_arena_f64(mem, m, 1);
     w->forces = mt_arena_f64(mem, nq, 1);
-    w->trim = mt_arena_f64(mem, nq, 1);
+    w->trim = mt_arena_f64(mem, nq, (size_t)sys->n_trims);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_data_init(&w->data, sys, mem, err));
     MT_TRY(mt_placement_init(&w->at, sys, mem, err));

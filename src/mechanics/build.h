@@ -19,7 +19,8 @@ typedef struct mt_builder {
     int *hinge_at;         /* [model links] the system's joint of its first hinge or -1 */
     int axis_vec[3];       /* vectors of the global axes */
     mt_sorted vec_order;   /* of the system's vectors */
-    const mt_system_drive *drive; /* of the caller; NULL: the configuration's own */
+    const mt_system_drive *drive; /* [n_drives] of the caller */
+    int n_drives;
     mt_err *err;
 } mt_builder;
 

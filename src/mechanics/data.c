@@ -151,7 +151,7 @@ void mt_poses_increment(const mt_system *sys, const mt_pose *from, const mt_pose
 mt_status mt_placement_init(mt_placement *place, const mt_system *sys, mt_arena *mem,
                             mt_err *err)
 {
-    *place = (mt_placement){.drive = 0.0};
+    *place = (mt_placement){.drive = {0.0}};
     place->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *place->pose);
     place->turn = mt_arena_f64(mem, (size_t)sys->n_measures, 1);
     return mt_arena_check(mem, err);
@@ -161,7 +161,7 @@ void mt_placement_copy(const mt_system *sys, const mt_placement *from, mt_placem
 {
     memcpy(to->pose, from->pose, (size_t)sys->n_bodies * sizeof *to->pose);
     memcpy(to->turn, from->turn, (size_t)sys->n_measures * sizeof *to->turn);
-    to->drive = from->drive;
+    memcpy(to->drive, from->drive, (size_t)sys->n_drives * sizeof *to->drive);
 }
 
 /* Numbers. */
@@ -295,9 +295,12 @@ void mt_data_turns(const mt_data *d, mt_placement *at)
 
 mt_cx mt_data_target(const mt_data *d, int i, const mt_placement *at)
 {
-    const bool drive = i == d->sys->drive_constraint;
+    const mt_system *const sys = d->sys;
+    const int drive = i - (sys->n_constraints - sys->n_drives);
     return d->target[i] -
-           (drive ? creal(mt_data_scalar(d, d->sys->drive, 0.0)) - at->drive : 0.0);
+           (drive >= 0
+                ? creal(mt_data_scalar(d, sys->drives[drive].position, 0.0)) - at->drive[drive]
+                : 0.0);
 }
 
 void mt_data_drawn(const mt_data *d, mt_pose *poses)
@@ -352,12 +355,13 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
                                        mt_pose_of(reference, def->body[1]), &parts);
         }
     }
-    if (sys->drive_constraint >= 0) {
+    for (int i = 0; i < sys->n_drives; i++) {
+        const mt_drive_def *const drive = &sys->drives[i];
         const mt_measure_def *const def =
-            &sys->measures[sys->constraints[sys->drive_constraint].measure[0]];
+            &sys->measures[sys->constraints[drive->constraint].measure[0]];
         const mt_measure_data m = mt_data_measure(d, def);
         const mt_cx at = mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
                                           mt_pose_of(reference, def->body[1]), NULL);
-        d->target[sys->drive_constraint] = at + mt_data_scalar(d, sys->drive, 0.0);
+        d->target[drive->constraint] = at + mt_data_scalar(d, drive->position, 0.0);
     }
 }

@@ -37,7 +37,8 @@ typedef struct mt_placement {
     /* [measures] each angle with whole turns; 0 in the reference position. An angle is read as
      * the value nearest to this */
     double *turn;
-    double drive; /* position of the driven joint from the reference position [rad, m] */
+    /* [sys->n_drives] positions of driven joints from the reference position [rad, m] */
+    double drive[MT_DRIVES_MOST];
 } mt_placement;
 
 mt_status mt_placement_init(mt_placement *place, const mt_system *sys, mt_arena *mem,
@@ -55,7 +56,7 @@ typedef struct mt_data {
     int input;           /* -1: no derivative */
     mt_cx (*vec)[3];     /* [n_vecs] */
     mt_cx (*rest)[2];    /* [n_springs] rest values of the two measures of each spring */
-    mt_cx *target;       /* [n_constraints]; that of the drive at the joint's position */
+    mt_cx *target;       /* [n_constraints]; those of drives at their positions */
     /* what Newton's method keeps from design to design (newton.h); NULL: nothing */
     struct mt_newton_start *start;
 } mt_data;
@@ -66,13 +67,13 @@ void mt_data_vec(mt_data *d, int i);
 /* Compute all vectors; all targets, from the drawn position. */
 void mt_data_vecs(mt_data *d);
 void mt_data_targets(mt_data *d);
-/* Compute rest values and the target of the drive at the reference position (poses may have
+/* Compute rest values and the targets of drives at the reference position (poses may have
  * derivatives). */
 void mt_data_rest(mt_data *d, const mt_pose *reference);
 /* Update the whole turns of the angles in at->turn; each angle is less than half a turn from
  * its last value. */
 void mt_data_turns(const mt_data *d, mt_placement *at);
-/* Target of constraint i with the driven joint at its position in `at`. */
+/* Target of constraint i with the driven joints at their positions in `at`. */
 mt_cx mt_data_target(const mt_data *d, int i, const mt_placement *at);
 /* A node as a complex number; MT_NO_NODE gives `otherwise`. */
 mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise);

@@ -106,11 +106,11 @@ static mt_status joint_forces(equilibrium_rounding *r, double lambda, const doub
                : mt_eliminate_multipliers(&lin->e, r->pull, r->mu, &lin->scratch, err);
 }
 
-/* Compute pull and across; returns the coefficient of the trimmed spring's force. */
-static double sum_piece_forces(equilibrium_rounding *r, const double *phi)
+/* Compute pull and across; returns the coefficients of the trimmed springs' forces. */
+static mt_trim_forces sum_piece_forces(equilibrium_rounding *r, const double *phi)
 {
     const mt_linear *const lin = r->lin;
-    double trim = 0.0;
+    mt_trim_forces trim = {{0.0}};
     memset(r->pull, 0, (size_t)lin->sys->nq * sizeof *r->pull);
     memset(r->across, 0, (size_t)r->m * sizeof *r->across);
     for (int i = 0; i < lin->n_pieces; i++) {
@@ -124,8 +124,8 @@ static double sum_piece_forces(equilibrium_rounding *r, const double *phi)
             continue;
         }
         mt_piece_add(p, 2.0 * p->stiffness * mt_piece_work(other, phi), bent, r->pull);
-        if (p->trimmed) {
-            trim += r->energy[i];
+        if (p->trim >= 0) {
+            trim.of[p->trim] += r->energy[i];
         } else {
             mt_piece_add(other, p->stiffness * r->energy[i], other->g, r->pull);
         }
@@ -142,13 +142,13 @@ static mt_status equilibrium_rounding_of(equilibrium_rounding *r, double lambda,
     const mt_system *const sys = lin->sys;
     double sum = 0.0;
     MT_TRY(joint_forces(r, lambda, phi, err));
-    const double trim = sum_piece_forces(r, phi);
-    MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, r->pull, r->across, trim, r->x, r->y,
-                             &lin->scratch, err));
+    const mt_trim_forces trim = sum_piece_forces(r, phi);
+    MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, r->pull, r->across, trim.of, r->x,
+                             r->y, &lin->scratch, err));
     for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
         const double way = fabs(r->energy[i] - mt_piece_work(p, r->x));
-        if (p->equation < 0 && !p->trimmed) {
+        if (p->equation < 0 && p->trim < 0) {
             sum += way *
                    ((fabs(p->stiffness) * p[p->partner].roundness) + (DBL_EPSILON * p->size));
         }

@@ -43,9 +43,9 @@ struct mt_section_slopes {
 typedef struct work {
     mt_linear *lin;
     const double *phi;
-    double *pull;   /* [nq] F_q */
-    double *across; /* [all equations] F_nu */
-    double trim;    /* F_tau */
+    double *pull;        /* [nq] F_q */
+    double *across;      /* [all equations] F_nu */
+    mt_trim_forces trim; /* F_tau */
     double *x;
     double *y;
     double *energy; /* [n_pieces] E */
@@ -294,8 +294,11 @@ static void pull_piece(work *w, int i, const double *mu, const mt_placement *mov
     } else if (p->spring >= 0) {
         const double along = mt_piece_work(other, w->phi);
         second = w->row[i] >= 0 ? 2.0 * p->stiffness * along : 0.0;
-        w->trim += p->trimmed ? w->energy[i] : 0.0;
-        mt_piece_add(other, p->trimmed ? 0.0 : p->stiffness * w->energy[i], other->g, w->pull);
+        if (p->trim >= 0) {
+            w->trim.of[p->trim] += w->energy[i];
+        }
+        mt_piece_add(other, p->trim >= 0 ? 0.0 : p->stiffness * w->energy[i], other->g,
+                     w->pull);
     }
     if (second != 0.0) {
         add_second(p, second, way, bent, on);
@@ -421,7 +424,7 @@ static void add_sections(const work *w, double *slope)
         if (w->row[s->piece] >= 0) {
             slope[s->input] += 2.0 * p->stiffness * mt_piece_work(other, w->phi) * along;
         }
-        if (!p->trimmed) {
+        if (p->trim < 0) {
             slope[s->input] +=
                 p->stiffness * s->stretch * (w->energy[at] - mt_piece_work(other, w->x));
         }
@@ -503,7 +506,7 @@ static void add_springs(const work *w, double *slope)
     const mt_linear *const lin = w->lin;
     for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
-        if (p->spring < 0 || p->trimmed) {
+        if (p->spring < 0 || p->trim >= 0) {
             continue;
         }
         const mt_spring_def *const s = &lin->sys->springs[p->spring];
@@ -737,7 +740,7 @@ mt_status mt_equilibrium_slopes(mt_linear *lin, double lambda, const double *phi
         pull_piece(&w, i, mu, &moving, &parts);
     }
     pull_masses(lin, -lambda, phi, w.pull);
-    MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, w.pull, w.across, w.trim, w.x, w.y,
+    MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, w.pull, w.across, w.trim.of, w.x, w.y,
                              &lin->scratch, err));
     add_springs(&w, slope);
     add_loads(&w, slope);

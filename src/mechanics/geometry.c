@@ -95,10 +95,10 @@ static bool same_bodies(const pair *p)
     return true;
 }
 
-/* Number of constraints without the drive's, which is the last. */
+/* Number of constraints without those of drives, which are the last. */
 static int own_constraints(const mt_system *sys)
 {
-    return sys->n_constraints - (sys->driven ? 1 : 0);
+    return sys->n_constraints - sys->n_drives;
 }
 
 static bool same_constraints(pair *p)
@@ -187,14 +187,37 @@ static bool same_counts(const mt_system *a, const mt_system *b)
            same_ints(a->n_inputs, a->inputs, b->inputs);
 }
 
-/* True where both are positions of the same motion of one joint. */
-static bool one_drive(const mt_system *a, const mt_system *b)
+/* True where both drive the same joints in the same order, and hold them the same way; or one
+ * of them has no drive and no loads, and a trimmed spring holds the one joint of the other. */
+static bool same_drives(const mt_system *a, const mt_system *b)
 {
-    if (a->driven && b->driven) {
-        return a->drive_joint == b->drive_joint && a->trim == b->trim &&
-               a->trim_spring == b->trim_spring;
+    if (!a->driven || !b->driven) {
+        const mt_system *const driven = a->driven ? a : b;
+        return a->driven != b->driven && driven->n_drives == 1 && driven->n_trims == 1 &&
+               !(a->driven ? b : a)->loaded;
     }
-    return a->driven != b->driven && (a->driven ? a : b)->trim && !(a->driven ? b : a)->loaded;
+    bool same = a->n_drives == b->n_drives && a->n_trims == b->n_trims;
+    for (int i = 0; i < a->n_drives && same; i++) {
+        same = a->drives[i].joint == b->drives[i].joint &&
+               a->drives[i].spring == b->drives[i].spring;
+    }
+    return same;
+}
+
+/* True where at most one of the joints is driven to another position; *joint: it; -1: none. */
+static bool one_drive(pair *p, int *joint)
+{
+    const mt_system *const driven = p->a->driven ? p->a : p->b;
+    int n = 0;
+    const bool both = p->a->driven && p->b->driven;
+    *joint = both ? -1 : driven->drives[0].joint;
+    for (int i = 0; i < driven->n_drives && both; i++) {
+        if (!same_node(p, p->a->drives[i].position, p->b->drives[i].position)) {
+            *joint = driven->drives[i].joint;
+            n++;
+        }
+    }
+    return n <= 1;
 }
 
 /* Fails: MT_E_MEMORY. */
@@ -234,16 +257,18 @@ mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *sam
     return MT_OK;
 }
 
-mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err)
+mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, int *joint,
+                               mt_err *err)
 {
     pair p;
     *same = false;
-    if (!one_drive(a, b) || !same_counts(a, b)) {
+    *joint = -1;
+    if (!same_drives(a, b) || !same_counts(a, b)) {
         return MT_OK;
     }
     MT_TRY(pair_of(a, b, &p, err));
-    *same = same_geometry(&p) && same_springs(&p, true) && same_inertias(&p, true) &&
-            same_loads(&p);
+    *same = one_drive(&p, joint) && same_geometry(&p) && same_springs(&p, true) &&
+            same_inertias(&p, true) && same_loads(&p);
     free(p.map);
     return MT_OK;
 }

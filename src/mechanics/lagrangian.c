@@ -414,7 +414,7 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
     const size_t m = (size_t)sys->n_constraints;
     *l = (mt_lagrangian){0};
     l->g = mt_arena_f64(mem, nq, 1);
-    l->trim = mt_arena_f64(mem, nq, 1);
+    l->trim = mt_arena_f64(mem, nq, (size_t)sys->n_trims);
     l->c = mt_arena_f64(mem, m, 1);
     l->a = mt_arena_f64(mem, m, nq);
     l->h = hessian ? mt_arena_f64(mem, nq, nq) : NULL;
@@ -426,7 +426,8 @@ mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_are
 {
     const size_t nq = (size_t)sys->nq;
     const size_t m = (size_t)sys->n_constraints;
-    *l = (mt_lagrangian){.g = mt_arena_f64(mem, nq, 1), .trim = mt_arena_f64(mem, nq, 1)};
+    *l = (mt_lagrangian){.g = mt_arena_f64(mem, nq, 1),
+                         .trim = mt_arena_f64(mem, nq, (size_t)sys->n_trims)};
     l->c = mt_arena_f64(mem, m, 1);
     l->row = mt_arena_alloc(mem, m, sizeof *l->row);
     return mt_arena_check(mem, err);
@@ -642,12 +643,13 @@ static mt_cx add_spring_force(const mt_data *d, int i, mt_cx stretch, double way
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
     const int *const body = sys->measures[s->measure[0]].body;
-    const bool trimmed = i == sys->trim_spring;
+    const int trim = mt_system_trim_of(sys, i);
+    const bool trimmed = trim >= 0;
     const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
     mt_cx force = cx_mul(k, stretch) + mt_data_scalar(d, s->preload, 0.0) + (way * k);
     if (trimmed) {
-        force = cx_make(out->trim_force, out->trim_force_derivative);
-        add_gradient(sys, body, jet, 1.0, out, out->trim);
+        force = cx_make(out->trim_force.of[trim], out->trim_force_derivative.of[trim]);
+        add_gradient(sys, body, jet, 1.0, out, out->trim + ((ptrdiff_t)trim * sys->nq));
     }
     add_gradient(sys, body, jet, force, out, out->g);
     note_force(sys, out, body, jet, force);
@@ -679,7 +681,7 @@ static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
         piece->force = force;
         piece->stiffness = coupling ? 0.5 * k : k;
         piece->partner = other - side;
-        piece->trimmed = i == d->sys->trim_spring;
+        piece->trim = mt_system_trim_of(d->sys, i);
         piece->roundness *=
             s->free == MT_NO_NODE && piece_is_still(def, poses, out->rest) ? 0.0 : 1.0;
     }
@@ -692,7 +694,7 @@ static bool is_forceless(const mt_data *d, int i)
     const mt_spring_def *const s = &d->sys->springs[i];
     const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
     const mt_cx force = mt_data_scalar(d, s->preload, 0.0);
-    return i != d->sys->trim_spring && creal(k) == 0.0 && cimag(k) == 0.0 &&
+    return mt_system_trim_of(d->sys, i) < 0 && creal(k) == 0.0 && cimag(k) == 0.0 &&
            creal(force) == 0.0 && cimag(force) == 0.0;
 }
 
@@ -734,7 +736,7 @@ static bool is_unstrained(const mt_data *d, int i, const mt_placement *at,
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
     bool still = out->rest != NULL && out->terms == NULL && !out->slope &&
-                 i != sys->trim_spring && s->free == MT_NO_NODE &&
+                 mt_system_trim_of(sys, i) < 0 && s->free == MT_NO_NODE &&
                  creal(mt_data_scalar(d, s->preload, 0.0)) == 0.0;
     for (int side = 0; side < 2 && still; side++) {
         still = at->turn[s->measure[side]] == 0.0 &&
@@ -884,7 +886,7 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
 static mt_cx anchor_square(const mt_data *d)
 {
     const mt_system *const sys = d->sys;
-    const int count = sys->n_constraints - (sys->driven ? 1 : 0); /* a drive is no joint */
+    const int count = sys->n_constraints - sys->n_drives; /* a drive is no joint */
     mt_cx sum = 0.0;
     int arms = 0;
     for (int i = 0; i < count; i++) {
@@ -1052,7 +1054,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     const bool bends = hessian && curvature != MT_CURVATURE_ELASTIC;
     const size_t nq = (size_t)d->sys->nq;
     memset(out->g, 0, nq * sizeof *out->g);
-    memset(out->trim, 0, nq * sizeof *out->trim);
+    memset(out->trim, 0, (size_t)d->sys->n_trims * nq * sizeof *out->trim);
     if (out->a != NULL) {
         memset(out->a, 0, (size_t)m * nq * sizeof *out->a);
     }
@@ -1082,7 +1084,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     }
 }
 
-double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force,
+double mt_energy_value(const mt_data *d, const mt_placement *at, const mt_trim_forces *forces,
                        const mt_jets *jets)
 {
     const bool kept = jets != NULL && jets->pose != NULL && are_jets_of(d, at, jets);
@@ -1108,8 +1110,9 @@ double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_for
                 stretch[side] = creal(value) - creal(d->rest[i][side]);
             }
         }
-        if (i == sys->trim_spring) {
-            v += trim_force * stretch[0];
+        const int trim = mt_system_trim_of(sys, i);
+        if (trim >= 0) {
+            v += (forces != NULL ? forces->of[trim] : 0.0) * stretch[0];
             continue;
         }
         v += 0.5 * creal(mt_data_scalar(d, s->stiffness, 0.0)) * stretch[0] * stretch[1];

@@ -20,9 +20,9 @@ typedef struct mt_piece {
      * its own; half of the spring's stiffness where it couples two); otherwise 0 */
     double stiffness;
     int partner;
-    bool trimmed;              /* the force is an unknown, whatever its stiffness */
-    int equation;              /* equation whose multiplier the force is; -1: none */
-    double factor;             /* coefficient of the measure in it */
+    int trim;      /* of a spring whose force is an unknown, whatever its stiffness; -1: none */
+    int equation;  /* equation whose multiplier the force is; -1: none */
+    double factor; /* coefficient of the measure in it */
     const mt_measure_def *def; /* the measure; NULL: of the load of a point */
     int spring;                /* whose force it is, with its measure number `side`; -1: none */
     int side;
@@ -108,7 +108,7 @@ void mt_piece_add(const mt_piece *p, double c, const double *local, double *to);
 typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR, MT_ENERGY_NONE } mt_energy;
 
 /* Part of the Hessian: none, all, the geometric part alone (without k grad grad^T of springs),
- * or the rest (k grad grad^T alone; that of the trimmed spring is left out, as in all of
+ * or the rest (k grad grad^T alone; those of trimmed springs are left out, as in all of
  * it). */
 typedef enum mt_curvature {
     MT_CURVATURE_NONE,
@@ -117,13 +117,18 @@ typedef enum mt_curvature {
     MT_CURVATURE_ELASTIC
 } mt_curvature;
 
+/* Forces of the trimmed springs, in the order of their drives. */
+typedef struct mt_trim_forces {
+    double of[MT_DRIVES_MOST]; /* [sys->n_trims] */
+} mt_trim_forces;
+
 /* Newton's last step, too small to be taken: from the rounded position to the balance of
  * forces. A spring of stiffness k and gradient g has k g . q more force there, which is the
  * force used. */
 typedef struct mt_newton_residual {
     double *q;      /* [nq] */
     double *lambda; /* [m] */
-    double trim;    /* of the trimmed spring's force */
+    mt_trim_forces trim;
 } mt_newton_residual;
 
 /* A row of the constraints' Jacobian: its possibly nonzero entries. */
@@ -157,7 +162,7 @@ typedef struct mt_lagrangian {
     /* not NULL: h is sparse, with a value for each entry of the layout's envelope, 0 in the
      * rows of equations */
     const mt_layout *layout;
-    double *trim; /* [nq] gradient of the trimmed spring's measure (where the system has one) */
+    double *trim; /* nq x n_trims, gradients of the trimmed springs' measures */
     /* largest entry of the sum over all loads and springs of |contribution to g|; 0 without
      * loads */
     double force_scale;
@@ -177,12 +182,12 @@ typedef struct mt_lagrangian {
     /* [bodies], with terms: sum of the magnitudes of all forces on a body, torques divided by
      * the model length */
     double *push;
-    double trim_force; /* force of the trimmed spring, in; its own stiffness acts in h only */
-    double trim_force_derivative;
+    mt_trim_forces trim_force; /* in; their own stiffness acts in h only */
+    mt_trim_forces trim_force_derivative;
 } mt_lagrangian;
 
-/* m: number of constraints included (the drive's is the last). lambda may be NULL (0). h is
- * filled as `curvature` says. */
+/* m: number of constraints included (those of drives are the last). lambda may be NULL (0). h
+ * is filled as `curvature` says. */
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
                         const mt_placement *at, int m, const mt_cx *lambda,
                         mt_curvature curvature, mt_lagrangian *out);
@@ -200,8 +205,8 @@ void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, dou
 /* Fill terms, pieces and push as well, from the next evaluation on. */
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err);
-/* Energy alone. jets: those that are known there serve; NULL: none. */
-double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force,
+/* Energy alone. trim: NULL: 0; jets: those that are known there serve; NULL: none. */
+double mt_energy_value(const mt_data *d, const mt_placement *at, const mt_trim_forces *trim,
                        const mt_jets *jets);
 
 /* Visit one force: c times the gradient of a measure of these bodies is its contribution to the

@@ -683,7 +683,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     const bool loaded = lin->position.equilibrium.active;
     const mt_newton_residual *const left = &lin->position.equilibrium.left;
     const int all = sys->n_constraints;
-    lin->m = sys->trim ? all - 1 : all;
+    lin->m = all - sys->n_trims;
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
     mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
     lin->a = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, (size_t)nq);
@@ -692,7 +692,9 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     for (int i = 0; i < all && loaded; i++) {
         lambda[i] = lin->position.equilibrium.lambda[i] + left->lambda[i];
     }
-    l.trim_force = lin->position.equilibrium.trim_force + left->trim;
+    for (int i = 0; i < sys->n_trims; i++) {
+        l.trim_force.of[i] = lin->position.equilibrium.trim_force.of[i] + left->trim.of[i];
+    }
     if (loaded) {
         MT_TRY(mt_lagrangian_want_terms(&l, sys, &lin->geometry->mem, err));
         l.left = left->q;

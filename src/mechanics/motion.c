@@ -269,7 +269,8 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
 {
     const mt_data *const d = &o->lin->data;
     const mt_system *const sys = d->sys;
-    const mt_placement moving = {.pose = o->tangent, .turn = at->turn, .drive = at->drive};
+    mt_placement moving = *at;
+    moving.pose = o->tangent;
     mt_relative_jet jet;
     memset(o->a, 0, (size_t)o->m * (size_t)o->nq * sizeof *o->a);
     o->swing = 0.0;
@@ -292,27 +293,27 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
     o->swing = sqrt(o->swing);
 }
 
-/* Springs and loads. The trimmed spring has its own force at the linearised position, and its
+/* Springs and loads. A trimmed spring has its own force at the linearised position, and its
  * stiffness from there: both in its energy, too. */
 static void add_energy(mt_motion *o, const mt_placement *at)
 {
     const mt_linear *const lin = o->lin;
     const mt_system *const sys = lin->sys;
-    double trim = 0.0;
+    const double *const held = lin->position.equilibrium.trim_force.of;
     double stored = 0.0;
-    if (sys->trim_spring >= 0) {
-        const mt_spring_def *const s = &sys->springs[sys->trim_spring];
+    for (int i = 0; i < sys->n_trims; i++) {
+        const mt_spring_def *const s =
+            &sys->springs[sys->drives[sys->n_drives - sys->n_trims + i].spring];
         const mt_measure_def *const def = &sys->measures[s->measure[0]];
         const double way = creal(mt_data_value(&lin->data, def, at, NULL)) -
                            creal(mt_data_value(&lin->data, def, &lin->position.at, NULL));
         const double k = lin->value[s->stiffness];
-        trim = lin->position.equilibrium.trim_force + (k * way);
-        stored = way * (lin->position.equilibrium.trim_force + (0.5 * k * way));
+        o->l.trim_force.of[i] = held[i] + (k * way);
+        stored += way * (held[i] + (0.5 * k * way));
     }
-    o->l.trim_force = trim;
     mt_lagrangian_eval(&lin->data, MT_ENERGY_PHYSICAL, lin->position.drawn, at, 0, NULL,
                        MT_CURVATURE_NONE, &o->l);
-    o->potential = mt_energy_value(&lin->data, at, 0.0, NULL) + stored;
+    o->potential = mt_energy_value(&lin->data, at, NULL, NULL) + stored;
 }
 
 void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v)
@@ -409,7 +410,8 @@ void mt_motion_gauge(mt_motion *o, const mt_placement *at, const double *v, mt_g
         return;
     }
     const mt_measure_def *const def = &sys->measures[sys->joints[gauge.joint].coordinate];
-    const mt_placement moving = {.pose = o->tangent, .turn = at->turn, .drive = at->drive};
+    mt_placement moving = *at;
+    moving.pose = o->tangent;
     mt_jet jet;
     mt_data_eval(&lin->data, def, &moving, false, NULL, &jet);
     spread_row(sys, def->body, jet.g, v, out);

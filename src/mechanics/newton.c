@@ -13,10 +13,10 @@
  * the second made of it: the first is solved where there is no such step.
  * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in
  * scaled coordinates) take no step; the residual test then decides whether something still
- * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row
- * (a_d, c_d) is its equation:
+ * pushes along them. With `trim` the forces tau of some springs are unknown and the rows (a_d,
+ * c_d) of as many drives are their equations, all at once:
  *     [Z^T H Z   Z^T t] [eta]   [-Z^T (g + H v)  ]
- *     [a_d Z       0  ] [tau] = [-(c_d + a_d v)  ].
+ *     [a_d Z       0  ] [tau] = [-(c_d + a_d v)  ],  a column, a row for each.
  */
 #include "mechanics/newton.h"
 
@@ -97,7 +97,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     *w = (mt_newton_work){.p = p, .sys = sys};
     w->g = mt_arena_f64(mem, nq, 1);
     w->c = mt_arena_f64(mem, m, 1);
-    w->trim = mt_arena_f64(mem, nq, 1);
+    w->trim = mt_arena_f64(mem, nq, (size_t)sys->n_trims);
     if (saddle_pays(sys)) {
         w->sparse = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim};
         want_rows(&w->sparse, sys, mem);
@@ -110,7 +110,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     w->lambda = mt_arena_f64(mem, m, 1);
     w->v = mt_arena_f64(mem, nq, 1);
     w->step = mt_arena_f64(mem, nq, 1);
-    w->reduced = mt_arena_f64(mem, nq + 1, 1);
+    w->reduced = mt_arena_f64(mem, nq + (size_t)sys->n_trims, 1);
     return mt_arena_check(mem, err);
 }
 
@@ -159,16 +159,20 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
 {
     const int m = w->p->m;
     w->l.trim_force = w->tau;
-    w->l.trim_force_derivative = 0.0;
     load_multipliers(w);
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, m, w->lambda_cx,
                        hessian ? MT_CURVATURE_FULL : MT_CURVATURE_NONE, &w->l);
 }
 
-/* How many rows carry a multiplier: with trim all but the last. */
+int mt_newton_trims(const mt_newton_problem *p)
+{
+    return p->trim ? p->data->sys->n_trims : 0;
+}
+
+/* How many rows carry a multiplier: with trim all but those of trimmed drives. */
 static int rows(const mt_newton_work *w)
 {
-    return w->p->trim ? w->p->m - 1 : w->p->m;
+    return w->p->m - mt_newton_trims(w->p);
 }
 
 /* Elimination of those rows. */
@@ -238,22 +242,37 @@ static double row_length(const mt_elimination *e, const double *row, ptrdiff_t s
     return length > 0.0 ? length : 1.0;
 }
 
-/* Row and column of the drive, times scale[0] and scale[1]. */
-static void border(const mt_newton_work *w, const mt_elimination *e, const double scale[2],
+/* Units that keep the border of the size of the rest: of a trimmed drive's row, and of the
+ * column of its spring's force. */
+typedef struct border_scale {
+    double row[MT_DRIVES_MOST];
+    double column[MT_DRIVES_MOST];
+} border_scale;
+
+/* Rows of trimmed drives and columns of their springs' forces. */
+static void border(const mt_newton_work *w, const mt_elimination *e, const border_scale *scale,
                    double *k)
 {
     const int n = e->n;
-    const ptrdiff_t order = n + 1;
-    for (int c = 0; c < n; c++) {
-        const double *const zc = e->z + ((ptrdiff_t)c * e->nq);
-        double row = 0.0;
-        for (int j = 0; j < e->nq; j++) {
-            row += w->a[(w->p->m - 1) + ((ptrdiff_t)j * w->p->m)] * zc[j];
+    const int m = rows(w);
+    const int trims = mt_newton_trims(w->p);
+    const ptrdiff_t order = n + trims;
+    for (int d = 0; d < trims; d++) {
+        const double *const along = w->trim + ((ptrdiff_t)d * e->nq);
+        const ptrdiff_t at = n + d;
+        for (int c = 0; c < n; c++) {
+            const double *const zc = e->z + ((ptrdiff_t)c * e->nq);
+            double row = 0.0;
+            for (int j = 0; j < e->nq; j++) {
+                row += w->a[(m + d) + ((ptrdiff_t)j * w->p->m)] * zc[j];
+            }
+            k[at + (c * order)] = scale->row[d] * row;
+            k[c + (at * order)] = scale->column[d] * mt_dot(e->nq, zc, along);
         }
-        k[n + (c * order)] = scale[0] * row;
-        k[c + (n * order)] = scale[1] * mt_dot(e->nq, zc, w->trim);
+        for (ptrdiff_t c = n; c < order; c++) {
+            k[at + (c * order)] = 0.0;
+        }
     }
-    k[n + (n * order)] = 0.0;
 }
 
 /* Largest entry of the Hessian in the elimination's coordinates, in which Z has orthonormal
@@ -302,20 +321,23 @@ static mt_status invert_regular(int n, const double *k, double tolerance, double
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err)
 {
-    const int order = e->n + (w->p->trim ? 1 : 0);
+    const int trims = mt_newton_trims(w->p);
+    const int order = e->n + trims;
     int rank = 0;
-    double scale[2] = {1.0, 1.0}; /* of the border: row, column */
+    border_scale scale;
     double *const k = mt_arena_f64(mem, (size_t)order, (size_t)order);
     *inverse = mt_arena_f64(mem, (size_t)order, (size_t)order);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(newton_reduce_hessian(w, e, k, order, mem, err));
     const double noise = NO_STIFFNESS * stiffness_scale(w, e);
-    if (w->p->trim) { /* units that keep the border of the size of the rest */
+    if (trims > 0) {
         const double most = mt_max_abs((ptrdiff_t)order * order, k);
         const double stiffness = most > 0.0 ? most : 1.0;
-        scale[0] = stiffness / row_length(e, w->a + (w->p->m - 1), w->p->m);
-        scale[1] = stiffness / row_length(e, w->trim, 1);
-        border(w, e, scale, k);
+        for (ptrdiff_t d = 0; d < trims; d++) {
+            scale.row[d] = stiffness / row_length(e, w->a + rows(w) + d, w->p->m);
+            scale.column[d] = stiffness / row_length(e, w->trim + (d * e->nq), 1);
+        }
+        border(w, e, &scale, k);
     }
     const double most = mt_max_abs((ptrdiff_t)order * order, k);
     const double tolerance = fmax(NO_STIFFNESS, most > 0.0 ? noise / most : 0.0);
@@ -327,10 +349,12 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
         MT_TRY(mt_pinv(order, order, k, tolerance, *inverse, &rank, mem, err));
     }
     w->null_freedoms = order - rank;
-    for (int c = 0; c < order && w->p->trim; c++) { /* undone: the inverse's rows belong to the
-                                                       columns of what was inverted */
-        (*inverse)[e->n + ((ptrdiff_t)c * order)] *= scale[1];
-        (*inverse)[c + ((ptrdiff_t)e->n * order)] *= scale[0];
+    for (ptrdiff_t d = 0; d < trims; d++) { /* undone: the inverse's rows belong to the columns
+                                               of what was inverted */
+        for (ptrdiff_t c = 0; c < order; c++) {
+            (*inverse)[e->n + d + (c * order)] *= scale.column[d];
+            (*inverse)[c + ((e->n + d) * order)] *= scale.row[d];
+        }
     }
     return MT_OK;
 }
@@ -406,7 +430,6 @@ static mt_status evaluate_with_multipliers(mt_newton_work *w, const mt_placement
 {
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
     w->l.trim_force = w->tau;
-    w->l.trim_force_derivative = 0.0;
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, w->p->m, NULL,
                        w->elastic ? MT_CURVATURE_ELASTIC : MT_CURVATURE_FULL, &w->l);
     MT_TRY(eliminate_rows(w, mem, e, err));
@@ -454,18 +477,18 @@ mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
     return *sure && apart ? saddle_below(least, FAR_FROM_DEPENDENT, mem, sure, err) : MT_OK;
 }
 
-/* w->step, w->turn and how much *more the trimmed spring pushes, of w->reduced and w->turn;
- * *sure: the border of such a spring leaves the equations regular. */
-static mt_status solve_sparse(mt_newton_work *w, mt_newton_solver *solver, double *more,
+/* w->step, w->turn and how much *more the trimmed springs push, of w->reduced and w->turn;
+ * *sure: the border of such springs leaves the equations regular. */
+static mt_status solve_sparse(mt_newton_work *w, mt_newton_solver *solver, mt_trim_forces *more,
                               bool *sure, mt_arena *mem, mt_err *err)
 {
     const mt_saddle *const s = &solver->saddle;
-    if (!w->p->trim) {
+    if (mt_newton_trims(w->p) == 0) {
         return mt_saddle_solve(s, w->reduced, w->turn, w->step, w->turn, mem, err);
     }
     MT_TRY(mt_border_init(s, w->trim, FIRM, mem, &solver->border, sure, err));
-    return *sure ? mt_border_solve(&solver->border, w->reduced, w->turn, w->step, w->turn, more,
-                                   mem, err)
+    return *sure ? mt_border_solve(&solver->border, w->reduced, w->turn, w->step, w->turn,
+                                   more->of, mem, err)
                  : MT_OK;
 }
 
@@ -537,6 +560,12 @@ static mt_status find_multipliers(mt_newton_work *w, bool first, mt_arena *mem, 
     return MT_OK;
 }
 
+/* The forces of the trimmed springs, where they are unknown, change by more[n_trims]. */
+static void push_more(mt_newton_work *w, const double *more)
+{
+    mt_axpy(mt_newton_trims(w->p), 1.0, more, w->tau.of);
+}
+
 /* The same sparse. *sure: the equations are regular by a margin, and the step is not much
  * longer than allowed; otherwise the results are void. first: the margin also excludes
  * dependent equations next to this position, and Z^T H Z is positive definite. */
@@ -584,7 +613,7 @@ static mt_status newton_linearise_sparse(mt_newton_work *w, const mt_placement *
     for (int i = 0; i < p->m; i++) {
         w->turn[i] = -w->c[i];
     }
-    double more = 0.0;
+    mt_trim_forces more = {{0.0}};
     MT_TRY(solve_sparse(w, solver, &more, sure, mem, err));
     if (!*sure) {
         return MT_OK;
@@ -595,7 +624,9 @@ static mt_status newton_linearise_sparse(mt_newton_work *w, const mt_placement *
     /* (with nothing to compare, one that is too long is shortened as a whole) */
     *sure = w->moved <= (convex ? LITTLE_LONGER : 1.0) * MT_STEP_LIMIT ||
             (p->sparse && w->moved < HUGE_VAL);
-    w->tau += *sure ? more : 0.0;
+    if (*sure) {
+        push_more(w, more.of);
+    }
     return MT_OK;
 }
 
@@ -644,7 +675,9 @@ static mt_status newton_linearise(mt_newton_work *w, const mt_placement *at, mt_
     MT_TRY(mt_newton_invert(w, e, mem, &solver->inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);
-    double *const eta = mt_arena_f64(mem, (size_t)e->n + 1, 1);
+    const int trims = mt_newton_trims(w->p);
+    const int order = e->n + trims;
+    double *const eta = mt_arena_f64(mem, (size_t)order + 1, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < w->p->m; i++) {
         minus_c[i] = -w->c[i];
@@ -653,30 +686,28 @@ static mt_status newton_linearise(mt_newton_work *w, const mt_placement *at, mt_
     find_unbalanced(w, hv);
     mt_gemv(false, nq, nq, 1.0, w->h, nq, w->v, 1.0, hv);
     mt_eliminate_project(e, hv, w->reduced);
-    const int order = e->n + (w->p->trim ? 1 : 0);
     for (int i = 0; i < e->n; i++) {
         w->reduced[i] = -w->reduced[i];
     }
-    if (w->p->trim) {
-        double row = w->c[w->p->m - 1];
+    for (ptrdiff_t d = 0; d < trims; d++) {
+        const ptrdiff_t own = rows(w) + d;
+        double row = w->c[own];
         for (int j = 0; j < nq; j++) {
-            row += w->a[(w->p->m - 1) + ((ptrdiff_t)j * w->p->m)] * w->v[j];
+            row += w->a[own + ((ptrdiff_t)j * w->p->m)] * w->v[j];
         }
-        w->reduced[e->n] = -row;
+        w->reduced[e->n + d] = -row;
     }
     mt_gemv(false, order, order, 1.0, solver->inverse, order, w->reduced, 0.0, eta);
     mt_eliminate_expand(e, eta, w->step);
     mt_axpy(nq, 1.0, w->v, w->step);
     w->moved = mt_newton_scaled_norm(w, w->step);
-    if (!w->p->trim && w->moved > MT_STEP_LIMIT && w->moved < HUGE_VAL) {
+    if (trims == 0 && w->moved > MT_STEP_LIMIT && w->moved < HUGE_VAL) {
         MT_TRY(shorten(w, e, eta, mem, err));
         mt_eliminate_expand(e, eta, w->step);
         mt_axpy(nq, 1.0, w->v, w->step);
         w->moved = mt_newton_scaled_norm(w, w->step);
     }
-    if (w->p->trim) {
-        w->tau += eta[e->n];
-    }
+    push_more(w, eta + e->n);
     return MT_OK;
 }
 
@@ -778,7 +809,7 @@ static mt_status search_line(mt_newton_work *w, mt_placement *at, double *energy
         mt_newton_take_step(w, at, length);
         const mt_status rc = restore_constraints(w, at, mem, NULL);
         if (rc == MT_OK) {
-            const double now = mt_energy_value(w->p->data, at, w->tau, NULL);
+            const double now = mt_energy_value(w->p->data, at, &w->tau, NULL);
             *lower = now < *energy;
             *energy = *lower ? now : *energy;
         } else if (rc != MT_E_ASSEMBLY && rc != MT_E_DOMAIN) {
@@ -802,7 +833,7 @@ static mt_status newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *
     const int nq = w->sys->nq;
     double *const out = mt_arena_f64(mem, (size_t)nq, 1);
     MT_TRY(mt_newton_dense(w, mem, err));
-    double energy = mt_energy_value(w->p->data, at, w->tau, NULL);
+    double energy = mt_energy_value(w->p->data, at, &w->tau, NULL);
     *lower = false;
     MT_TRY(mt_arena_check(mem, err));
     const double size = mt_newton_scaled_norm(w, w->step);
@@ -823,14 +854,14 @@ static mt_status newton_descend(mt_newton_work *w, mt_placement *at, mt_arena *m
 {
     MT_TRY(mt_newton_dense(w, mem, err));
     MT_TRY(restore_constraints(w, at, mem, err));
-    double energy = mt_energy_value(w->p->data, at, w->tau, NULL);
+    double energy = mt_energy_value(w->p->data, at, &w->tau, NULL);
     bool lower = true;
     for (int it = 0; it < DESCENT_LIMIT && lower; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
-        const double tau = w->tau;
+        const mt_trim_forces tau = w->tau;
         mt_newton_solver solver;
         MT_TRY(newton_linearise(w, at, mem, &solver, err));
-        w->tau = tau; /* the force of the trimmed spring stands while the energy is compared */
+        w->tau = tau; /* the forces of trimmed springs stand while the energy is compared */
         lower = w->residual > FORCE_DONE + (NOISE_ROOM * w->noise);
         if (lower) { /* not lower: as low as rounding lets us see, Newton decides */
             MT_TRY(direction_of(w, &solver.e, mem, err));
@@ -864,14 +895,19 @@ static const double ENERGY_ROUNDING = 1e-12;
 /* Entries of a left null vector (largest 1) above this belong to the dependent set. */
 static const double IN_THE_SET = 1e-6;
 
-/* Store the last step, w->step and trim, and the change of the multipliers: with r = g + A^T
- * lambda + t trim + H step unbalanced, A^T lambda' = -r. */
-static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solver, double trim,
-                           mt_arena *mem, mt_newton_residual *left, mt_err *err)
+/* Store the last step, w->step and that of the trimmed springs' forces, tau before, and the
+ * change of the multipliers: with r = g + A^T lambda + t trim + H step unbalanced, A^T lambda'
+ * = -r. */
+static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solver,
+                           const mt_trim_forces *tau, mt_arena *mem, mt_newton_residual *left,
+                           mt_err *err)
 {
     const int nq = w->sys->nq;
     const int m = w->p->m;
-    left->trim = w->p->trim ? trim : 0.0;
+    const int trims = mt_newton_trims(w->p);
+    for (int d = 0; d < trims; d++) {
+        left->trim.of[d] = w->tau.of[d] - tau->of[d];
+    }
     left->q = mt_arena_f64(mem, (size_t)nq, 1);
     left->lambda = mt_arena_f64(mem, (size_t)m, 1);
     double *const r = mt_arena_f64(mem, (size_t)nq, 1);
@@ -882,18 +918,24 @@ static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solv
         return MT_OK;
     }
     for (ptrdiff_t j = 0; j < nq; j++) {
-        r[j] = -w->g[j] - (left->trim * w->trim[j]) - mt_dot(m, w->a + (j * m), w->lambda);
+        r[j] = -w->g[j];
+        for (ptrdiff_t d = 0; d < trims; d++) {
+            r[j] -= left->trim.of[d] * w->trim[j + (d * nq)];
+        }
+        r[j] -= mt_dot(m, w->a + (j * m), w->lambda);
     }
     mt_gemv(false, nq, nq, -1.0, w->h, nq, w->step, 1.0, r);
     return mt_eliminate_multipliers(&solver->e, r, left->lambda, mem, err);
 }
 
-/* tau: of the trimmed spring, before the last step. */
-static mt_status keep_solution(mt_newton_work *w, const mt_newton_solver *solver, double tau,
-                               mt_arena *mem, mt_stage *stage, mt_err *err)
+/* tau: of the trimmed springs, before the last step. */
+static mt_status keep_solution(mt_newton_work *w, const mt_newton_solver *solver,
+                               const mt_trim_forces *tau, mt_arena *mem, mt_stage *stage,
+                               mt_err *err)
 {
-    MT_TRY(keep_step(w, solver, w->tau - tau, mem, &stage->left, err));
-    w->tau = tau;
+    const size_t trims = (size_t)w->sys->n_trims;
+    MT_TRY(keep_step(w, solver, tau, mem, &stage->left, err));
+    w->tau = *tau;
     const size_t nq = (size_t)w->sys->nq;
     const size_t m = (size_t)w->p->m;
     stage->active = true;
@@ -903,11 +945,11 @@ static mt_status keep_solution(mt_newton_work *w, const mt_newton_solver *solver
     stage->lambda = mt_arena_f64(mem, m, 1);
     stage->h = solver->sparse ? NULL : mt_arena_f64(mem, nq, nq);
     stage->a = solver->sparse ? NULL : mt_arena_f64(mem, m, nq);
-    stage->trim = mt_arena_f64(mem, nq, 1);
+    stage->trim = mt_arena_f64(mem, nq, trims);
     stage->d_lambda = mt_arena_f64(mem, m, 1);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(stage->lambda, w->lambda, m * sizeof *stage->lambda);
-    memcpy(stage->trim, w->trim, nq * sizeof *stage->trim);
+    memcpy(stage->trim, w->trim, nq * trims * sizeof *stage->trim);
     stage->solver.border.along = solver->border.along == NULL ? NULL : stage->trim;
     if (!solver->sparse) {
         memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
@@ -941,7 +983,7 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
                            mt_newton_solver *solver, bool *falls, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    const double tau = w->tau;
+    const mt_trim_forces tau = w->tau;
     bool sure = false;
     if (w->least != NULL) {
         const bool physical = w->p->energy == MT_ENERGY_PHYSICAL;
@@ -1027,8 +1069,8 @@ enum { CHORDS_MOST = 4 };
 /* w->step, w->turn and *more, as newton_linearise_sparse, with an earlier factor and what the
  * forces are now. */
 static mt_status step_with_earlier_factor(mt_newton_work *w, const mt_placement *at,
-                                          mt_newton_solver *solver, double *more, mt_arena *mem,
-                                          mt_err *err)
+                                          mt_newton_solver *solver, mt_trim_forces *more,
+                                          mt_arena *mem, mt_err *err)
 {
     const mt_newton_problem *const p = w->p;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -1044,10 +1086,10 @@ static mt_status step_with_earlier_factor(mt_newton_work *w, const mt_placement 
     for (int i = 0; i < p->m; i++) {
         w->turn[i] = -w->c[i];
     }
-    MT_TRY(p->trim ? mt_border_solve(&solver->border, w->reduced, w->turn, w->step, w->turn,
-                                     more, mem, err)
-                   : mt_saddle_solve(&solver->saddle, w->reduced, w->turn, w->step, w->turn,
-                                     mem, err));
+    MT_TRY(mt_newton_trims(p) > 0 ? mt_border_solve(&solver->border, w->reduced, w->turn,
+                                                    w->step, w->turn, more->of, mem, err)
+                                  : mt_saddle_solve(&solver->saddle, w->reduced, w->turn,
+                                                    w->step, w->turn, mem, err));
     w->moved = mt_newton_scaled_norm(w, w->step);
     mt_arena_rewind(mem, mark);
     return MT_OK;
@@ -1062,7 +1104,7 @@ static mt_status go_on_with_factor(mt_newton_work *w, mt_placement *at,
     const bool beside = w->moved <= BESIDE && w->moved > NEXT_TO;
     double before = w->moved;
     for (int i = 0; i < CHORDS_MOST && solver != NULL && w->followed && beside; i++) {
-        double more = 0.0;
+        mt_trim_forces more = {{0.0}};
         mt_axpy(w->p->m, 1.0, w->turn, w->lambda); /* of the step before */
         MT_TRY(step_with_earlier_factor(w, at, solver, &more, mem, err));
         stage->iterations++;
@@ -1071,7 +1113,7 @@ static mt_status go_on_with_factor(mt_newton_work *w, mt_placement *at,
             memset(w->turn, 0, (size_t)w->p->m * sizeof *w->turn);
             return MT_OK;
         }
-        w->tau += more;
+        push_more(w, more.of);
         mt_newton_take_step(w, at, MT_STEP_LIMIT);
         newton_follow(w, at);
         if (w->moved * (w->moved / before) <= ROUNDING) {
@@ -1083,12 +1125,13 @@ static mt_status go_on_with_factor(mt_newton_work *w, mt_placement *at,
 }
 
 /* Take the step that was found with the elastic stiffness alone, or leave it; returns how long
- * it was. tau: of the trimmed spring, before. */
+ * it was. tau: of the trimmed springs, before. */
 static double move_elastically(mt_newton_work *w, mt_placement *at,
-                               const mt_newton_solver *solver, double tau, double previous)
+                               const mt_newton_solver *solver, const mt_trim_forces *tau,
+                               double previous)
 {
     if (!use_elastic(w, previous)) {
-        w->tau = tau;
+        w->tau = *tau;
         return HUGE_VAL;
     }
     const double moved = w->moved;
@@ -1109,7 +1152,7 @@ static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *m
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         const bool dense = w->h != NULL;
         mt_newton_solver solver;
-        const double tau = w->tau;
+        const mt_trim_forces tau = w->tau;
         const bool followed = w->followed;
         bool falls = false;
         MT_TRY(linearise(w, at, it == 0, mem, &solver, &falls, err));
@@ -1121,12 +1164,12 @@ static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *m
             stay_at_rest(w, &solver);
         }
         if (w->elastic) {
-            previous = move_elastically(w, at, &solver, tau, previous);
+            previous = move_elastically(w, at, &solver, &tau, previous);
             continue;
         }
         const bool rest = rests(w, previous);
         if (rest && balanced(w)) {
-            const mt_status rc = keep_solution(w, &solver, tau, mem, stage, err);
+            const mt_status rc = keep_solution(w, &solver, &tau, mem, stage, err);
             *done = rc == MT_OK;
             return rc;
         }
@@ -1137,7 +1180,7 @@ static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *m
         }
         if (rest && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
             return MT_OK; /* something pushes along a freedom without stiffness */
-        }                 /* else the force of the trimmed spring is still settling */
+        }                 /* else the forces of trimmed springs are still settling */
         unbalanced = w->residual;
         move_by_newton_step(w, at, &solver);
         MT_TRY(go_on_with_factor(w, at, followed ? &solver : NULL, mem, stage, err));
@@ -1226,8 +1269,8 @@ typedef struct ending {
     double before; /* the energy where the stage began */
 } ending;
 
-/* end->saddle: the stationary point last evaluated is, with the drive held, a saddle from which
- * the way from the start leads down. That direction is stored in w->step. */
+/* end->saddle: the stationary point last evaluated is, with the drives held, a saddle from
+ * which the way from the start leads down. That direction is stored in w->step. */
 static mt_status check_for_saddle(mt_newton_work *w, const mt_placement *start,
                                   const mt_placement *at, const mt_stage *stage, ending *end,
                                   mt_arena *mem, mt_err *err)
@@ -1239,14 +1282,14 @@ static mt_status check_for_saddle(mt_newton_work *w, const mt_placement *start,
     if (!end->done) {
         return MT_OK;
     }
-    end->energy = mt_energy_value(w->p->data, at, w->tau, kept_jets(w, false));
+    end->energy = mt_energy_value(w->p->data, at, &w->tau, kept_jets(w, false));
     if (solver.sparse && mt_saddle_convex(&solver.saddle)) {
         return MT_OK;
     }
     double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     if (solver.sparse) {
-        const double tau = w->tau;
+        const mt_trim_forces tau = w->tau;
         MT_TRY(mt_newton_dense(w, mem, err));
         MT_TRY(newton_linearise(w, at, mem, &solver, err));
         w->tau = tau;
@@ -1291,7 +1334,7 @@ static mt_status descend_to_minimum(mt_newton_work *w, const mt_placement *start
     return MT_OK;
 }
 
-/* With trim: the stationary point with the joint locked is where the trimmed one begins. */
+/* With trim: the stationary point with the joints locked is where the trimmed one begins. */
 static mt_status lock_first(const mt_newton_work *w, mt_placement *at, mt_arena *mem,
                             mt_stage *stage, mt_err *err)
 {
@@ -1327,7 +1370,7 @@ static mt_status accept_or_descend(mt_newton_work *w, const mt_placement *start,
     MT_TRY(copy_placement(w, at, &first, mem, err));
     w->watch = false;
     mt_placement_copy(w->sys, start, at);
-    w->tau = 0.0;
+    w->tau = (mt_trim_forces){{0.0}};
     if (w->p->trim && found) {
         MT_TRY(lock_first(w, at, mem, stage, err));
         MT_TRY(attempt(w, at, mem, stage, &end->done, err));
@@ -1352,7 +1395,7 @@ mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt
     w.sparse.rest = problem->rest;
     MT_TRY(copy_placement(&w, at, &start, mem, err));
     const bool closed = newton_gap_at(&w, at) <= MT_STEP_DONE;
-    end.before = mt_energy_value(problem->data, at, 0.0, kept_jets(&w, true));
+    end.before = mt_energy_value(problem->data, at, NULL, kept_jets(&w, true));
     w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
     MT_TRY(attempt(&w, at, mem, stage, &end.done, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
@@ -1372,5 +1415,48 @@ mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at
     MT_TRY(mt_arena_check(mem, err));
     *gap_m = newton_gap_at(&w, at) * sys->length_m;
     mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
+                            const double *pull_trim, double *x, double *y, mt_arena *scratch,
+                            mt_err *err)
+{
+    const mt_newton_solver *const solver = &stage->solver;
+    if (solver->sparse) {
+        return solver->border.along != NULL
+                   ? mt_border_adjoint(&solver->border, pull, across, pull_trim, x, y, scratch,
+                                       err)
+                   : mt_saddle_solve(&solver->saddle, pull, across, x, y, scratch, err);
+    }
+    const mt_elimination *const e = &stage->solver.e;
+    const ptrdiff_t nq = e->nq;
+    const int m = stage->m;
+    const int order = e->n + (m - e->m);
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double *const r = mt_arena_f64(scratch, (size_t)nq, 1);
+    double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    double *const b = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    double *const way = mt_arena_f64(scratch, (size_t)nq, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_eliminate_particular(e, across, x, scratch, err));
+    memcpy(r, pull, (size_t)nq * sizeof *r);
+    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, x, 1.0, r);
+    mt_eliminate_project(e, r, b);
+    for (ptrdiff_t t = 0; t < m - e->m; t++) {
+        b[e->n + t] = pull_trim[t] - mt_dot(e->nq, stage->trim + (t * nq), x);
+    }
+    mt_gemv(true, order, order, 1.0, stage->solver.inverse, order, b, 0.0, eta);
+    mt_eliminate_expand(e, eta, way);
+    mt_axpy(e->nq, 1.0, way, x);
+    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, way, 1.0, r);
+    for (int i = e->m; i < m; i++) { /* those of the trimmed drives */
+        y[i] = eta[e->n + (i - e->m)];
+        for (ptrdiff_t j = 0; j < nq; j++) {
+            r[j] -= stage->a[i + (j * m)] * y[i];
+        }
+    }
+    MT_TRY(mt_eliminate_multipliers(e, r, y, scratch, err));
+    mt_arena_rewind(scratch, mark);
     return MT_OK;
 }

@@ -14,8 +14,8 @@ typedef struct mt_newton_problem {
     /* of the springs' rest values, where those are of a position; NULL: not known */
     const mt_pose *rest;
     int m;
-    /* the drive's constraint, the last, is held by the unknown force of the trimmed spring
-     * instead of its multiplier */
+    /* the constraints of the drives that springs hold, the last, are held by the unknown forces
+     * of these springs instead of their multipliers */
     bool trim;
     /* sparse matrices only: MT_E_EQUILIBRIUM where they are not sufficient. Freedoms without
      * stiffness are not detected */
@@ -47,10 +47,10 @@ typedef struct mt_newton_start {
  */
 typedef struct mt_newton_solver {
     bool sparse;
-    mt_saddle saddle; /* of all equations, the drive's included */
+    mt_saddle saddle; /* of all equations, those of drives included */
     mt_border border; /* of the saddle, with trim */
-    mt_elimination e; /* with trim: without the drive's row */
-    /* pseudo-inverse of the (bordered) reduced Hessian, order n (n + 1 with trim) */
+    mt_elimination e; /* with trim: without the rows of trimmed drives */
+    /* pseudo-inverse of the (bordered) reduced Hessian, order n (n + n_trims with trim) */
     double *inverse;
 } mt_newton_solver;
 
@@ -61,17 +61,17 @@ typedef struct mt_stage {
     int factors;             /* matrix factorisations in them */
     mt_newton_solver solver; /* at the solution */
     int m;
-    double *lambda;          /* [m] multipliers: constraint force A^T lambda */
-    double *h;               /* nq x nq Hessian of the Lagrangian; NULL: the solver is sparse */
-    double *a;               /* m x nq; NULL: the solver is sparse */
-    double *trim;            /* [nq] gradient of the trimmed spring's measure */
-    double trim_force;       /* its force; physical energy [N, N m] */
-    double residual;         /* largest unbalanced force / largest force */
-    mt_newton_residual left; /* with the physical energy */
-    int null_freedoms;       /* freedoms without stiffness at the solution */
+    double *lambda; /* [m] multipliers: constraint force A^T lambda */
+    double *h;      /* nq x nq Hessian of the Lagrangian; NULL: the solver is sparse */
+    double *a;      /* m x nq; NULL: the solver is sparse */
+    double *trim;   /* nq x n_trims, gradients of the trimmed springs' measures */
+    mt_trim_forces trim_force; /* their forces; physical energy [N, N m] */
+    double residual;           /* largest unbalanced force / largest force */
+    mt_newton_residual left;   /* with the physical energy */
+    int null_freedoms;         /* freedoms without stiffness at the solution */
     /* derivatives by one input, for the physical energy (position.h) */
     double *d_lambda; /* [m] */
-    double d_trim_force;
+    mt_trim_forces d_trim_force;
 } mt_stage;
 
 /* Largest |c| of the first m constraints (angles and cosines in model lengths) [m]. */
@@ -82,6 +82,17 @@ mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at
  * MT_E_INTERRUPTED. */
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt_arena *mem,
                           mt_stage *stage, mt_err *err);
+
+/*
+ * Adjoint: with x and y from the transposed equations of such a stage,
+ *     H x + A^T y = pull,  A x = across,  t . x = pull_trim
+ * (the last with trimmed springs, where x has no equations of their drives' rows), additional
+ * forces f and gaps c change pull . q + across . lambda + pull_trim tau by -(x . f + y . c).
+ * pull [nq], across [m], pull_trim [n_trims], x [nq], y [m].
+ */
+mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
+                            const double *pull_trim, double *x, double *y, mt_arena *scratch,
+                            mt_err *err);
 
 /* Shared by the files newton*.c: one linearisation of a stage at the present position. All
  * arrays are in the arena given to mt_newton_work_init. */
@@ -98,16 +109,16 @@ typedef struct mt_newton_work {
     double *c;       /* [m] */
     double *a;       /* m x nq; NULL until mt_newton_dense */
     double *h;       /* nq x nq; NULL until mt_newton_dense */
-    double *trim;    /* [nq] gradient of the trimmed spring's measure */
+    double *trim;    /* nq x n_trims, gradients of the trimmed springs' measures */
     double *v;       /* [nq] step back to the constraints */
     double *step;    /* [nq] */
     double *turn;    /* [m] change of the multipliers by the step, where it was found sparse */
-    double *reduced; /* [nq + 1] Z^T g, and the drive's equation with trim */
-    double tau;      /* force of the trimmed spring */
-    double residual; /* unbalanced force / force scale */
-    double noise;    /* its rounding error */
-    double gap;      /* model lengths */
-    double moved;    /* model lengths */
+    double *reduced; /* [nq + n_trims] Z^T g, and the drives' equations with trim */
+    mt_trim_forces tau; /* of the trimmed springs */
+    double residual;    /* unbalanced force / force scale */
+    double noise;       /* its rounding error */
+    double gap;         /* model lengths */
+    double moved;       /* model lengths */
     int null_freedoms;
     int factors; /* factorisations so far */
     /* leave plain Newton at once where the Hessian is indefinite and the start is not an
@@ -130,6 +141,8 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
 /* Allocate dense matrices, once: required by all evaluations except mt_newton_linearise_sparse
  * and mt_newton_gap_at. */
 mt_status mt_newton_dense(mt_newton_work *w, mt_arena *mem, mt_err *err);
+/* Trimmed springs whose forces are unknown: all of the system's with trim, else none. */
+int mt_newton_trims(const mt_newton_problem *p);
 /* Lagrangian at a position with w->lambda and w->tau. */
 void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian);
 /* *firm: the sparse Z^T H Z is safely invertible. Checked before a solution is reported. */
@@ -139,8 +152,8 @@ mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *fi
  * `apart` also everywhere next to this position. */
 mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
                                   mt_saddle *least, bool *sure, mt_err *err);
-/* Pseudo-inverse (order n, with trim n + 1) of the (bordered) reduced w->h; sets the number of
- * freedoms without stiffness in w. */
+/* Pseudo-inverse (order n, with trim n + n_trims) of the (bordered) reduced w->h; sets the
+ * number of freedoms without stiffness in w. */
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err);
 /* Move the position along w->step, at most `limit` model lengths. */

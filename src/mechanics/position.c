@@ -20,7 +20,7 @@
  * stages) and a dot the derivative along (input, d) at fixed lambda and tau:
  *     v = -A^+ c.,   K eta = -Z^T ((grad L). + H v),   q' = d + v + Z eta,
  *         A^T lambda' = -(grad L). - H (v + Z eta) - t tau',
- * K the reduced Hessian of newton.c with the border of the trimmed spring. The chart moves
+ * K the reduced Hessian of newton.c with the border of the trimmed springs. The chart moves
  * with the position; that adds nothing, because grad L = 0 there.
  */
 
@@ -52,14 +52,15 @@ static mt_status differentiate(mt_newton_work *w, const mt_placement *at, const 
     return MT_OK;
 }
 
-/* d += v + Z eta; d_lambda [m] and *d_trim follow. */
+/* d += v + Z eta; d_lambda [m] and d_trim follow. */
 static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *d, double *d_lambda,
-                         double *d_trim, mt_arena *scratch, mt_err *err)
+                         mt_trim_forces *d_trim, mt_arena *scratch, mt_err *err)
 {
     const int nq = w->sys->nq;
-    const int m = w->p->m;
+    const ptrdiff_t m = w->p->m;
     const mt_elimination *const e = &stage->solver.e;
-    const int order = e->n + (w->p->trim ? 1 : 0);
+    const int trims = mt_newton_trims(w->p);
+    const int order = e->n + trims;
     double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
     MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(mt_eliminate_particular(e, w->c, w->v, scratch, err));
@@ -68,31 +69,32 @@ static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *d, do
     for (int i = 0; i < e->n; i++) {
         w->reduced[i] = -w->reduced[i];
     }
-    if (w->p->trim) {
-        double row = w->c[m - 1];
+    for (ptrdiff_t t = 0; t < trims; t++) {
+        const ptrdiff_t at = m - trims + t;
+        double row = w->c[at];
         for (int j = 0; j < nq; j++) {
-            row -= stage->a[(m - 1) + ((ptrdiff_t)j * m)] * w->v[j];
+            row -= stage->a[at + (j * m)] * w->v[j];
         }
-        w->reduced[e->n] = row;
+        w->reduced[e->n + t] = row;
     }
     mt_gemv(false, order, order, 1.0, stage->solver.inverse, order, w->reduced, 0.0, eta);
     mt_eliminate_expand(e, eta, w->step);
     mt_gemv(false, nq, nq, 1.0, stage->h, nq, w->step, 1.0, w->g);
-    if (w->p->trim) {
-        mt_axpy(nq, eta[e->n], stage->trim, w->g);
+    for (ptrdiff_t t = 0; t < trims; t++) {
+        d_trim->of[t] = eta[e->n + t];
+        mt_axpy(nq, eta[e->n + t], stage->trim + (t * nq), w->g);
     }
     for (int j = 0; j < nq; j++) {
         w->g[j] = -w->g[j];
     }
     mt_axpy(nq, 1.0, w->v, d);
     mt_axpy(nq, 1.0, w->step, d);
-    *d_trim = w->p->trim ? eta[e->n] : 0.0;
     return mt_eliminate_multipliers(e, w->g, d_lambda, scratch, err);
 }
 
 /* The same at once: H x + A^T lambda' + t tau' = -(grad L)., A x = -c. */
 static mt_status respond_sparse(mt_newton_work *w, const mt_stage *stage, double *d,
-                                double *d_lambda, double *d_trim, mt_arena *scratch,
+                                double *d_lambda, mt_trim_forces *d_trim, mt_arena *scratch,
                                 mt_err *err)
 {
     const int nq = w->sys->nq;
@@ -100,8 +102,8 @@ static mt_status respond_sparse(mt_newton_work *w, const mt_stage *stage, double
     for (int j = 0; j < nq; j++) {
         w->g[j] = -w->g[j];
     }
-    MT_TRY(w->p->trim
-               ? mt_border_solve(&solver->border, w->g, w->c, w->step, d_lambda, d_trim,
+    MT_TRY(mt_newton_trims(w->p) > 0
+               ? mt_border_solve(&solver->border, w->g, w->c, w->step, d_lambda, d_trim->of,
                                  scratch, err)
                : mt_saddle_solve(&solver->saddle, w->g, w->c, w->step, d_lambda, scratch, err));
     mt_axpy(nq, 1.0, w->step, d);
@@ -121,7 +123,7 @@ static mt_status newton_tangent(const mt_newton_problem *problem, const mt_place
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     MT_TRY(mt_newton_work_init(&w, problem, scratch, err));
     double *const d_lambda = mt_arena_f64(scratch, (size_t)problem->m, 1);
-    double d_trim = 0.0;
+    mt_trim_forces d_trim = {{0.0}};
     if (!stage->solver.sparse) {
         MT_TRY(mt_newton_dense(&w, scratch, err));
     }
@@ -133,47 +135,6 @@ static mt_status newton_tangent(const mt_newton_problem *problem, const mt_place
         memcpy(stage->d_lambda, d_lambda, (size_t)problem->m * sizeof *d_lambda);
         stage->d_trim_force = d_trim;
     }
-    mt_arena_rewind(scratch, mark);
-    return MT_OK;
-}
-
-mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
-                            double pull_trim, double *x, double *y, mt_arena *scratch,
-                            mt_err *err)
-{
-    const mt_newton_solver *const solver = &stage->solver;
-    if (solver->sparse) {
-        return solver->border.along != NULL
-                   ? mt_border_adjoint(&solver->border, pull, across, pull_trim, x, y, scratch,
-                                       err)
-                   : mt_saddle_solve(&solver->saddle, pull, across, x, y, scratch, err);
-    }
-    const mt_elimination *const e = &stage->solver.e;
-    const ptrdiff_t nq = e->nq;
-    const int m = stage->m;
-    const int order = e->n + (m - e->m);
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    double *const r = mt_arena_f64(scratch, (size_t)nq, 1);
-    double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
-    double *const b = mt_arena_f64(scratch, (size_t)order + 1, 1);
-    double *const way = mt_arena_f64(scratch, (size_t)nq, 1);
-    MT_TRY(mt_arena_check(scratch, err));
-    MT_TRY(mt_eliminate_particular(e, across, x, scratch, err));
-    memcpy(r, pull, (size_t)nq * sizeof *r);
-    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, x, 1.0, r);
-    mt_eliminate_project(e, r, b);
-    b[e->n] = pull_trim - mt_dot(e->nq, stage->trim, x);
-    mt_gemv(true, order, order, 1.0, stage->solver.inverse, order, b, 0.0, eta);
-    mt_eliminate_expand(e, eta, way);
-    mt_axpy(e->nq, 1.0, way, x);
-    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, way, 1.0, r);
-    for (int i = e->m; i < m; i++) { /* the drive's */
-        y[i] = eta[e->n];
-        for (ptrdiff_t j = 0; j < nq; j++) {
-            r[j] -= stage->a[i + (j * m)] * y[i];
-        }
-    }
-    MT_TRY(mt_eliminate_multipliers(e, r, y, scratch, err));
     mt_arena_rewind(scratch, mark);
     return MT_OK;
 }
@@ -333,8 +294,10 @@ mt_status mt_branch_kept(mt_branch *b, int m, const double *a, bool *kept, mt_ar
 }
 
 /*
- * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian
- * of all constraints and e_d the drive's row,
+ * Continuation in the position s of the driven joint. Several joints are driven together, each
+ * in proportion, on the straight line between their positions: s is then that of the leading
+ * one, which has the longest way, and e_d has the part of each in its row. At a closed
+ * position, with A the Jacobian of all constraints and e_d the drive's row,
  *     v     = A^+ e_d                            the smallest motion that drives the joint
  *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v          the one that strains the springs least (K:
  *                                                their elastic stiffness), so that what hangs
@@ -390,9 +353,16 @@ typedef struct walk {
     double growth;    /* of the longest step */
     int iterations;
     mt_arena *mem;
-    int row;        /* of the drive */
-    double unit;    /* of the joint's coordinate: 1 rad, or the model length [m] */
-    double goal;    /* position of the joint that is asked for */
+    int lead;    /* of the drives */
+    int row;     /* of its constraint */
+    double unit; /* of its coordinate: 1 rad, or the model length [m] */
+    double goal; /* position of it that is asked for */
+    double from; /* where it stood */
+    struct {     /* of all drives, in their order */
+        double from;
+        double goal;
+        double part; /* motion per motion of the leading one */
+    } drive[MT_DRIVES_MOST];
     mt_pose *trial; /* [bodies] */
     mt_pose *guess; /* [bodies] */
     double *rate;   /* [nq] dq/ds */
@@ -411,13 +381,68 @@ typedef struct walk {
     mt_err why;              /* what the last closure that failed said */
 } walk;
 
-static mt_status walk_init(walk *w, mt_err *err)
+/* 1 rad, or the model length [m]. */
+static double drive_unit(const mt_system *sys, int drive)
+{
+    return sys->joints[sys->drives[drive].joint].angle ? 1.0 : sys->length_m;
+}
+
+/* Sets out from the current position; lead: of the drives, -1: the one with the longest way. */
+static void set_out(walk *w, int lead)
+{
+    const mt_system *const sys = w->sys;
+    double longest = -1.0;
+    w->lead = lead;
+    for (int i = 0; i < sys->n_drives; i++) {
+        w->drive[i].from = w->at->drive[i];
+        w->drive[i].goal = creal(mt_data_scalar(w->data, sys->drives[i].position, 0.0));
+        const double way = fabs(w->drive[i].goal - w->drive[i].from) / drive_unit(sys, i);
+        if (lead < 0 && !(way <= longest)) {
+            longest = way;
+            w->lead = i;
+        }
+    }
+    w->row = sys->drives[w->lead].constraint;
+    w->unit = drive_unit(sys, w->lead);
+    w->goal = w->drive[w->lead].goal;
+    w->from = w->drive[w->lead].from;
+    for (int i = 0; i < sys->n_drives; i++) {
+        const double way = w->drive[i].goal - w->drive[i].from;
+        const bool moves = lead < 0 && way != 0.0; /* then the leading one does */
+        w->drive[i].part = i == w->lead ? 1.0 : moves ? way / (w->goal - w->from) : 0.0;
+    }
+}
+
+/* out := positions of all drives, the leading one at s. */
+static void drives_at(const walk *w, double s, double *out)
+{
+    for (int i = 0; i < w->sys->n_drives; i++) {
+        out[i] = i == w->lead   ? s
+                 : s == w->goal ? w->drive[i].goal
+                                : w->drive[i].from + (w->drive[i].part * (s - w->from));
+    }
+}
+
+/* Where the leading one stands. */
+static double stands_at(const walk *w)
+{
+    return w->at->drive[w->lead];
+}
+
+/* e_d [constraints] */
+static void set_drive_rows(const walk *w, double *c)
+{
+    memset(c, 0, (size_t)w->sys->n_constraints * sizeof *c);
+    for (int i = 0; i < w->sys->n_drives; i++) {
+        c[w->sys->drives[i].constraint] = w->drive[i].part;
+    }
+}
+
+static mt_status walk_init(walk *w, int lead, mt_err *err)
 {
     const mt_system *const sys = w->sys;
     const size_t n = (size_t)sys->n_bodies;
-    w->row = sys->drive_constraint;
-    w->unit = sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m;
-    w->goal = creal(mt_data_scalar(w->data, sys->drive, 0.0));
+    set_out(w, lead);
     w->trial = mt_arena_alloc(w->mem, n, sizeof *w->trial);
     w->guess = mt_arena_alloc(w->mem, n, sizeof *w->guess);
     w->beyond.pose = mt_arena_alloc(w->mem, n, sizeof *w->beyond.pose);
@@ -430,12 +455,14 @@ static mt_status walk_init(walk *w, mt_err *err)
     return mt_arena_check(w->mem, err);
 }
 
-/* Largest |A rate - e_d| in rows scaled as the elimination does. */
-static double misfit(const mt_elimination *e, const double *a, int row, const double *rate)
+/* Largest |A rate - e_d| in rows scaled as the elimination does; c: e_d, row: the leading
+ * one. */
+static double misfit(const mt_elimination *e, const double *a, const double *c, int row,
+                     const double *rate)
 {
     double worst = 0.0;
     for (int i = 0; i < e->m; i++) {
-        double s = i == row ? -1.0 : 0.0;
+        double s = -c[i];
         for (ptrdiff_t j = 0; j < e->nq; j++) {
             s += a[i + (j * e->m)] * rate[j];
         }
@@ -482,8 +509,7 @@ static mt_status relax_sparse(walk *w, mt_newton_work *work, bool *sure, mt_err 
     if (*sure) {
         MT_TRY(mt_newton_is_firm(&saddle, w->mem, sure, err));
     }
-    memset(work->c, 0, (size_t)m * sizeof *work->c);
-    work->c[w->row] = 1.0;
+    set_drive_rows(w, work->c);
     return *sure ? mt_saddle_solve(&saddle, NULL, work->c, work->v, NULL, w->mem, err) : MT_OK;
 }
 
@@ -511,10 +537,9 @@ static mt_status relax_dense(walk *w, mt_newton_work *work, mt_err *err)
     MT_TRY(mt_newton_dense(work, w->mem, err));
     mt_newton_evaluate(work, w->at, false);
     MT_TRY(mt_eliminate(w->sys, work->p->m, work->a, w->mem, &e, err));
-    memset(work->c, 0, (size_t)work->p->m * sizeof *work->c);
-    work->c[w->row] = 1.0;
+    set_drive_rows(w, work->c);
     MT_TRY(mt_eliminate_particular(&e, work->c, work->v, w->mem, err));
-    w->held = !(misfit(&e, work->a, w->row, work->v) <= HELD);
+    w->held = !(misfit(&e, work->a, work->c, w->row, work->v) <= HELD);
     stand(w, &e);
     return w->held ? MT_OK : relax(w, work, &e, err);
 }
@@ -554,7 +579,8 @@ static mt_status try_step(walk *w, double to, double length, bool *good, bool *t
     const mt_system *const sys = w->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     mt_stage stage = {.active = false};
-    mt_placement trial = {.pose = w->trial, .turn = w->at->turn, .drive = to};
+    mt_placement trial = {.pose = w->trial, .turn = w->at->turn};
+    drives_at(w, to, trial.drive);
     memcpy(w->trial, w->guess, (size_t)sys->n_bodies * sizeof *w->trial);
     const mt_newton_problem problem = {.data = w->data,
                                        .energy = MT_ENERGY_ANCHOR,
@@ -590,16 +616,16 @@ static mt_status try_step(walk *w, double to, double length, bool *good, bool *t
 /* End of a step towards the goal, without a tiny last step. */
 static double step_end(const walk *w, double step)
 {
-    const double way = w->goal - w->at->drive;
+    const double way = w->goal - stands_at(w);
     const bool last = step >= fabs(way) - (SHORTEST * DRIVE_STEP * w->unit);
-    return last ? w->goal : w->at->drive + copysign(step, way);
+    return last ? w->goal : stands_at(w) + copysign(step, way);
 }
 
 static void take_drive_position(walk *w, const mt_pose *poses, double to)
 {
     memcpy(w->at->pose, poses, (size_t)w->sys->n_bodies * sizeof *poses);
     mt_data_turns(w->data, w->at);
-    w->at->drive = to;
+    drives_at(w, to, w->at->drive);
     if (fabs(w->goal - to) <= fabs(w->goal - w->beyond.to)) {
         w->beyond.known = false; /* passed on the branch */
     }
@@ -637,7 +663,7 @@ static double next_growth(const walk *w, double part)
 static mt_status advance(walk *w, double *h, mt_err *err)
 {
     const mt_system *const sys = w->sys;
-    const double way = w->goal - w->at->drive;
+    const double way = w->goal - stands_at(w);
     double size = 0.0;
     bool good = false;
     MT_TRY(find_rate(w, &size, err));
@@ -652,7 +678,7 @@ static mt_status advance(walk *w, double *h, mt_err *err)
         bool turned = false;
         const double to = step_end(w, step);
         for (int j = 0; j < sys->nq; j++) {
-            w->motion[j] = (to - w->at->drive) * w->rate[j];
+            w->motion[j] = (to - stands_at(w)) * w->rate[j];
         }
         memcpy(w->guess, w->at->pose, (size_t)sys->n_bodies * sizeof *w->guess);
         mt_poses_move(sys, w->guess, w->motion);
@@ -661,7 +687,7 @@ static mt_status advance(walk *w, double *h, mt_err *err)
             note_turned(w, to);
         }
         if (!good && w->beyond.known &&
-            fabs(w->beyond.turned - w->at->drive) <= 2.0 * MEETING * w->unit) {
+            fabs(w->beyond.turned - stands_at(w)) <= 2.0 * MEETING * w->unit) {
             go_straight(w);
             *h = step;
             break;
@@ -679,7 +705,7 @@ static mt_status advance(walk *w, double *h, mt_err *err)
     return MT_OK;
 }
 
-/* The joint that turns or slides furthest along dq/ds, other than the driven one; -1: none. */
+/* The joint that turns or slides furthest along dq/ds, other than driven ones; -1: none. */
 static int fastest_joint(const walk *w, double *ratio)
 {
     const mt_system *const sys = w->sys;
@@ -687,7 +713,7 @@ static int fastest_joint(const walk *w, double *ratio)
     double most = 0.0;
     for (int i = 0; i < sys->n_joints; i++) {
         const mt_system_joint *const joint = &sys->joints[i];
-        if (joint->coordinate < 0 || i == sys->drive_joint) {
+        if (joint->coordinate < 0 || mt_system_drive_of(sys, i) >= 0) {
             continue;
         }
         const double rate = mt_drive_rate(w->data, joint->coordinate, w->at->pose, w->rate);
@@ -701,37 +727,181 @@ static int fastest_joint(const walk *w, double *ratio)
     return best;
 }
 
+static const char *drive_unit_name(const mt_system *sys, int drive)
+{
+    return sys->joints[sys->drives[drive].joint].angle ? "rad" : "m";
+}
+
+enum { PLACE_SIZE = 320 };
+
+/* joint "a", or joints "a", "b" where several are on their way. */
+static const char *name_driven(const walk *w)
+{
+    const mt_system *const sys = w->sys;
+    const char *out = "";
+    int n = 0;
+    for (int i = 0; i < sys->n_drives; i++) {
+        n += w->drive[i].part != 0.0 ? 1 : 0;
+    }
+    for (int i = 0, told = 0; i < sys->n_drives; i++) {
+        if (w->drive[i].part != 0.0) {
+            const char *const before = told++ > 0 ? ", " : n > 1 ? "joints " : "joint ";
+            out = mt_arena_printf(w->mem, "%s%s\"%s\"", out, before,
+                                  sys->joints[sys->drives[i].joint].name);
+        }
+    }
+    return out;
+}
+
+/* Where they stand, or the positions asked for. */
+static const char *name_positions(const walk *w, bool goal)
+{
+    const char *out = "";
+    for (int i = 0; i < w->sys->n_drives; i++) {
+        if (w->drive[i].part != 0.0) {
+            out = mt_arena_printf(
+                w->mem, goal ? "%s%s%g %s" : "%s%s%.6g %s", out, out[0] != '\0' ? ", " : "",
+                goal ? w->drive[i].goal : w->at->drive[i], drive_unit_name(w->sys, i));
+        }
+    }
+    return out;
+}
+
 static mt_status refuse_drive_position(walk *w, mt_err *err)
 {
     const mt_system *const sys = w->sys;
-    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
-    const char *const unit = joint->angle ? "rad" : "m";
+    const char *const which = name_driven(w);
+    const char *const where = name_positions(w, false);
     double size = 0.0;
     double ratio = 0.0;
+    MT_TRY(mt_arena_check(w->mem, err));
     MT_TRY(find_rate(w, &size, err));
     if (!(size > 0.0)) {
-        return mt_fail(err, MT_E_ASSEMBLY,
-                       "joint \"%s\" cannot be driven: the other joints hold it where it is "
-                       "(or it stands at a limit position)",
-                       joint->name);
+        return mt_fail(
+            err, MT_E_ASSEMBLY,
+            "%s cannot be driven: the other joints hold it where it is (or it stands "
+            "at a limit position)",
+            which);
     }
     const int fast = fastest_joint(w, &ratio);
     if (w->held || size >= LIMIT_RATIO) {
         return fast < 0 ? mt_fail(err, MT_E_ASSEMBLY,
-                                  "joint \"%s\" cannot be driven beyond %.6g %s: limit "
-                                  "position, where the mechanism moves without it",
-                                  joint->name, w->at->drive, unit)
+                                  "%s cannot be driven beyond %s: limit position, where the "
+                                  "mechanism moves without it",
+                                  which, where)
                         : mt_fail(err, MT_E_ASSEMBLY,
-                                  "joint \"%s\" cannot be driven beyond %.6g %s: limit "
-                                  "position, where joint \"%s\" moves without it (%.2g %s per "
-                                  "%s just before)",
-                                  joint->name, w->at->drive, unit, sys->joints[fast].name,
-                                  ratio, sys->joints[fast].angle ? "rad" : "m", unit);
+                                  "%s cannot be driven beyond %s: limit position, where joint "
+                                  "\"%s\" moves without it (%.2g %s per %s just before)",
+                                  which, where, sys->joints[fast].name, ratio,
+                                  sys->joints[fast].angle ? "rad" : "m",
+                                  drive_unit_name(sys, w->lead));
     }
-    return mt_fail(err, MT_E_ASSEMBLY, "joint \"%s\" cannot be driven beyond %.6g %s: %s",
-                   joint->name, w->at->drive, unit,
+    return mt_fail(err, MT_E_ASSEMBLY, "%s cannot be driven beyond %s: %s", which, where,
                    w->why.text[0] != '\0' ? w->why.text
                                           : "singular position, where the motion can branch");
+}
+
+/* " (file:line:column)" of an address of the model's file, or "". */
+static void name_place(const mt_model *m, mt_addr addr, char *out, size_t size)
+{
+    int line = 0;
+    int column = 0;
+    out[0] = '\0';
+    if (m->path != NULL && mt_model_locate(m, addr, &line, &column)) {
+        (void)mt_snprintf(out, size, " (%s:%d:%d)", mt_text_base_name(m->path), line, column);
+    }
+}
+
+/* The configuration's own drive of this joint; NULL: none. */
+static const mt_drive *own_drive(const mt_system *sys, const char *joint)
+{
+    const mt_configuration *const c = &sys->model->configurations[sys->configuration];
+    for (int i = 0; i < c->n_drives; i++) {
+        if (strcmp(c->drives[i].joint_name.s, joint) == 0) {
+            return &c->drives[i];
+        }
+    }
+    return NULL;
+}
+
+/* Entries of the combination of other equations that a drive's equation is, its largest 1,
+ * below this are rounding. */
+static const double IN_THE_SET = 1e-6;
+
+/*
+ * Drive d has an equation a_d that those of the joints and of the drives before it already
+ * contain: a_d = A^T w. Where w has a part in the rows of other drives, these drive the same
+ * freedom.
+ */
+static mt_status refuse_dependent_drive(const walk *w, const mt_elimination *e, int d,
+                                        const double *gradient, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const char *const joint = sys->joints[sys->drives[d].joint].name;
+    double *const weight = mt_arena_f64(w->mem, (size_t)e->m, 1);
+    MT_TRY(mt_arena_check(w->mem, err));
+    MT_TRY(mt_eliminate_multipliers(e, gradient, weight, w->mem, err));
+    const double most = mt_max_abs(e->m, weight);
+    int other = -1;
+    for (int i = 0; i < d && other < 0; i++) {
+        const double part = fabs(weight[sys->drives[i].constraint]);
+        other = part > IN_THE_SET * most ? i : -1;
+    }
+    if (other < 0) {
+        return mt_fail(err, MT_E_ASSEMBLY,
+                       "joint \"%s\" cannot be driven: the other joints hold it where it is "
+                       "(or it stands at a limit position)",
+                       joint);
+    }
+    mt_joint_names names;
+    char place[PLACE_SIZE] = "";
+    const mt_drive *const own = own_drive(sys, joint);
+    MT_TRY(mt_name_joints(sys, e->m, weight, w->mem, &names, err));
+    if (own != NULL) {
+        name_place(sys->model, own->addr, place, sizeof place);
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "joints \"%s\" and \"%s\" cannot both be driven%s: they are one freedom of "
+                   "the loop of joints %s, and driving one moves the other",
+                   sys->joints[sys->drives[other].joint].name, joint, place, names.text);
+}
+
+/* Each drive must have a freedom of its own where the way begins. */
+static mt_status refuse_dependent_drives(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    const ptrdiff_t all = sys->n_constraints;
+    const ptrdiff_t nq = sys->nq;
+    const mt_newton_problem problem = problem_here(w, sys->n_constraints);
+    double *const a = mt_arena_f64(w->mem, (size_t)all, (size_t)nq);
+    double *const gradient = mt_arena_f64(w->mem, (size_t)nq, 1);
+    mt_newton_work work;
+    MT_TRY(mt_arena_check(w->mem, err));
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    MT_TRY(mt_newton_dense(&work, w->mem, err));
+    mt_newton_evaluate(&work, w->at, false);
+    int before = -1;
+    for (int d = 0; d <= sys->n_drives; d++) {
+        const ptrdiff_t m = all - sys->n_drives + d;
+        mt_elimination e;
+        for (ptrdiff_t j = 0; j < nq; j++) {
+            memcpy(a + (j * m), work.a + (j * all), (size_t)m * sizeof *a);
+        }
+        const bool same = before >= 0;
+        MT_TRY(mt_eliminate(sys, (int)m, a, w->mem, &e, err));
+        if (same && e.qr.rank == before) { /* the last one added nothing */
+            for (ptrdiff_t j = 0; j < nq; j++) {
+                memcpy(a + (j * (m - 1)), work.a + (j * all), (size_t)(m - 1) * sizeof *a);
+                gradient[j] = work.a[m - 1 + (j * all)];
+            }
+            MT_TRY(mt_eliminate(sys, (int)m - 1, a, w->mem, &e, err));
+            return refuse_dependent_drive(w, &e, d - 1, gradient, err);
+        }
+        before = e.qr.rank;
+    }
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
 }
 
 /* From a dead centre of the other joints several ways lead on. */
@@ -739,7 +909,7 @@ static mt_status refuse_dead_centre(walk *w, mt_err *err)
 {
     const mt_system *const sys = w->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
-    const mt_newton_problem problem = problem_here(w, sys->n_constraints - 1);
+    const mt_newton_problem problem = problem_here(w, sys->n_constraints - sys->n_drives);
     mt_newton_work work;
     mt_elimination e;
     mt_saddle least;
@@ -769,36 +939,55 @@ double mt_drive_reach(const mt_system *sys, int joint)
 }
 
 /* Bodies that move much further than the joint make steps short. */
-static mt_status refuse_steps(const walk *w, mt_err *err)
+static mt_status refuse_steps(walk *w, mt_err *err)
 {
-    const mt_system *const sys = w->sys;
-    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    const char *const which = name_driven(w);
+    const char *const where = name_positions(w, false);
+    const char *const goal = name_positions(w, true);
+    MT_TRY(mt_arena_check(w->mem, err));
     return mt_fail(err, MT_E_ASSEMBLY,
-                   "joint \"%s\" reached %g %s in %d steps, not %g %s: other parts would have "
-                   "to move too far",
-                   joint->name, w->at->drive, joint->angle ? "rad" : "m", (int)MOST_STEPS,
-                   w->goal, joint->angle ? "rad" : "m");
+                   "%s reached %s in %d steps, not %s: other parts would have to move too far",
+                   which, where, (int)MOST_STEPS, goal);
 }
 
-static mt_status refuse_far(const walk *w, mt_err *err)
+static mt_status refuse_far(const walk *w, int drive, mt_err *err)
 {
     const mt_system *const sys = w->sys;
-    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    const int joint = sys->drives[drive].joint;
     return mt_fail(err, MT_E_ASSEMBLY,
                    "joint \"%s\" cannot be driven to %g %s: at most %g %s from the reference "
                    "position",
-                   joint->name, w->goal, joint->angle ? "rad" : "m",
-                   mt_drive_reach(sys, sys->drive_joint), joint->angle ? "rad" : "m");
+                   sys->joints[joint].name, w->drive[drive].goal, drive_unit_name(sys, drive),
+                   mt_drive_reach(sys, joint), drive_unit_name(sys, drive));
+}
+
+/* True where all joints stand as they are asked to. */
+static bool has_arrived(const walk *w)
+{
+    bool there = true;
+    for (int i = 0; i < w->sys->n_drives; i++) {
+        there = there && w->at->drive[i] == w->drive[i].goal;
+    }
+    return there;
+}
+
+static bool is_at_reference(const walk *w)
+{
+    bool there = true;
+    for (int i = 0; i < w->sys->n_drives; i++) {
+        there = there && w->at->drive[i] == 0.0;
+    }
+    return there;
 }
 
 /*
- * Move the driven joint from its position in `at` to its target, by continuation on the present
- * branch; at: in, out. The result is closed, with the springs strained about as little as
- * possible. Angles are followed over whole turns. On failure at->drive is the position reached;
- * Newton iterations are added to *iterations. Fails: MT_E_ASSEMBLY beyond mt_drive_reach, where
- * MOST_STEPS are not enough, at a limit position, in a position that the other joints
- * hold, and where they do not stay closed; MT_E_DEAD_CENTRE where the drawn position is
- * one; MT_E_MEMORY.
+ * Move the driven joints from their positions in `at` to their targets, together, by
+ * continuation on the present branch; at: in, out. The result is closed, with the springs
+ * strained about as little as possible. Angles are followed over whole turns. On failure
+ * at->drive is the position reached; Newton iterations are added to *iterations. Fails:
+ * MT_E_ASSEMBLY beyond mt_drive_reach, where MOST_STEPS are not enough, at a limit position, in
+ * a position that the other joints hold, and where they do not stay closed; MT_E_DEAD_CENTRE
+ * where the drawn position is one; MT_E_MEMORY.
  *
  * brief: the mechanism is closed by the smallest steps, not nearest to the predicted position:
  * a different position to second order, on the same branch, for a quarter of the work.
@@ -808,33 +997,38 @@ static mt_status drive_solve(const mt_data *data, bool brief, mt_placement *at, 
 {
     walk w = {
         .sys = data->sys, .data = data, .at = at, .brief = brief, .growth = 1.0, .mem = mem};
-    MT_TRY(walk_init(&w, err));
-    if (!(fabs(w.goal) <= mt_drive_reach(w.sys, w.sys->drive_joint))) {
-        return refuse_far(&w, err);
+    MT_TRY(walk_init(&w, -1, err));
+    for (int i = 0; i < w.sys->n_drives; i++) {
+        if (!(fabs(w.drive[i].goal) <= mt_drive_reach(w.sys, w.sys->drives[i].joint))) {
+            return refuse_far(&w, i, err);
+        }
     }
-    if (at->drive != w.goal && at->drive == 0.0) {
+    if (!has_arrived(&w) && is_at_reference(&w)) {
         MT_TRY(refuse_dead_centre(&w, err));
+    }
+    if (w.sys->n_drives > 1 && is_at_reference(&w)) {
+        MT_TRY(refuse_dependent_drives(&w, err));
     }
     double h = DRIVE_STEP * w.unit;
     int steps = 0;
-    for (; at->drive != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
+    for (; !has_arrived(&w) && h > 0.0 && steps < MOST_STEPS; steps++) {
         MT_TRY(mt_interrupt_check(w.sys->run->interrupt, err));
         MT_TRY(advance(&w, &h, err));
     }
     *iterations += w.iterations;
-    return at->drive == w.goal ? MT_OK
-           : h > 0.0           ? refuse_steps(&w, err)
-                               : refuse_drive_position(&w, err);
+    return has_arrived(&w) ? MT_OK
+           : h > 0.0       ? refuse_steps(&w, err)
+                           : refuse_drive_position(&w, err);
 }
 
-/* The motion dq/ds of the driven joint at `at`: rate[nq]; *size: how far it moves bodies [model
- * lengths, rad] per rad or model length of the joint; *held: there is none, because the other
- * joints hold it. Fails: as Newton's steps, MT_E_MEMORY. */
-static mt_status drive_motion(const mt_data *data, mt_placement *at, double *rate, double *size,
-                              bool *held, mt_arena *mem, mt_err *err)
+/* The motion dq/ds of a driven joint at `at`, the other driven joints held: rate[nq]; *size:
+ * how far it moves bodies [model lengths, rad] per rad or model length of the joint; *held:
+ * there is none, because the other joints hold it. Fails: as Newton's steps, MT_E_MEMORY. */
+static mt_status drive_motion(const mt_data *data, int drive, mt_placement *at, double *rate,
+                              double *size, bool *held, mt_arena *mem, mt_err *err)
 {
     walk w = {.sys = data->sys, .data = data, .at = at, .growth = 1.0, .mem = mem};
-    MT_TRY(walk_init(&w, err));
+    MT_TRY(walk_init(&w, drive, err));
     MT_TRY(find_rate(&w, size, err));
     memcpy(rate, w.rate, (size_t)w.sys->nq * sizeof *rate);
     *held = w.held;
@@ -853,10 +1047,10 @@ double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, con
 
 /* Reference and equilibrium. */
 
-/* Constraints of the plain assembly: all but the drive's. */
+/* Constraints of the plain assembly: all but those of drives. */
 static int assembly_constraints(const mt_system *sys)
 {
-    return sys->driven ? sys->n_constraints - 1 : sys->n_constraints;
+    return sys->n_constraints - sys->n_drives;
 }
 
 /* Constraint violations at the drawing below this times the model length are rounding of the
@@ -893,7 +1087,7 @@ static mt_status find_equilibrium(mt_state *p, const mt_data *data, mt_arena *me
                                        .drawn = p->drawn,
                                        .rest = p->reference.pose,
                                        .m = p->sys->n_constraints,
-                                       .trim = p->sys->trim,
+                                       .trim = p->sys->n_trims > 0,
                                        .sparse = p->sparse};
     return mt_newton_solve(&problem, &p->at, mem, &p->equilibrium, err);
 }
@@ -982,45 +1176,57 @@ static mt_status is_direct(const mt_state *p, bool anchored, bool *direct, mt_ar
 /* A spring that is trimmed by less than this part of how far the mechanism moves does no work
  * on the motion of the driven joint: what is left is rounding of the walk. */
 static const double TRIM_LEAST = 1e-7;
-enum { PLACE_SIZE = 320 };
+
+/* *works: some trimmed spring works on the motion of this driven joint, or that is not known.
+ * */
+static mt_status is_worked_on(mt_state *p, const mt_data *data, int drive, bool *works,
+                              mt_arena *mem, mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    const double unit = drive_unit(sys, drive);
+    double *const rate = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    double size = 0.0;
+    bool held = false;
+    MT_TRY(mt_arena_check(mem, err));
+    const mt_status rc = drive_motion(data, drive, &p->driven, rate, &size, &held, mem, NULL);
+    *works = rc != MT_OK || held || !(size > 0.0);
+    for (int t = sys->n_drives - sys->n_trims; t < sys->n_drives && !*works; t++) {
+        const int measure = sys->springs[sys->drives[t].spring].measure[0];
+        const bool turns = sys->measures[measure].kind == MT_MEASURE_ANGLE;
+        const double stretch = turns ? 1.0 : sys->length_m;
+        const double by = fabs(mt_drive_rate(data, measure, p->driven.pose, rate));
+        *works = !(by * unit / stretch <= TRIM_LEAST * size);
+    }
+    return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
+}
 
 /*
- * The force tau of a trimmed spring acts along the gradient t of its elongation. Along v =
- * dq/ds, the motion of the driven joint with nothing else held, equilibrium requires v . (g +
- * tau t) = 0: where v . t = 0 no force of the spring satisfies it. Reports that instead of the
- * failure rc of the search.
+ * The forces tau of trimmed springs act along the gradients t of their elongations. Along v =
+ * dq/ds, the motion of one driven joint with no other spring or load at work and the other
+ * driven joints held, equilibrium requires v . (g + t tau) = 0: where v . t = 0 for all of them
+ * no forces of the springs satisfy it. Reports that instead of the failure rc of the search.
  */
 static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt_arena *mem,
                               mt_err *err)
 {
     const mt_system *const sys = p->sys;
-    const mt_model *const m = sys->model;
-    const int measure = sys->springs[sys->trim_spring].measure[0];
-    const double unit = sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m;
-    const double stretch =
-        sys->measures[measure].kind == MT_MEASURE_ANGLE ? 1.0 : sys->length_m;
-    double *const rate = mt_arena_f64(mem, (size_t)sys->nq, 1);
-    double size = 0.0;
-    bool held = false;
-    MT_TRY(mt_arena_check(mem, err));
-    mt_status own = drive_motion(data, &p->driven, rate, &size, &held, mem, NULL);
-    if (own != MT_OK || held || !(size > 0.0) ||
-        !(fabs(mt_drive_rate(data, measure, p->driven.pose, rate)) * unit / stretch <=
-          TRIM_LEAST * size)) {
-        return own == MT_E_MEMORY ? mt_fail_memory(err) : rc;
+    int d = sys->n_drives - sys->n_trims;
+    for (; d < sys->n_drives; d++) {
+        bool works = true;
+        MT_TRY(is_worked_on(p, data, d, &works, mem, err));
+        if (!works) {
+            break;
+        }
     }
-    const mt_configuration *const c = &m->configurations[sys->configuration];
-    const char *const spring = sys->springs[sys->trim_spring].name;
-    const char *const joint = sys->joints[sys->drive_joint].name;
-    int line = 0;
-    int column = 0;
-    const bool known = c->drive.trim && strcmp(c->drive.trim_name.s, spring) == 0 &&
-                       m->path != NULL &&
-                       mt_model_locate(m, c->drive.trim_name.addr, &line, &column);
+    if (d == sys->n_drives) {
+        return rc;
+    }
+    const char *const spring = sys->springs[sys->drives[d].spring].name;
+    const char *const joint = sys->joints[sys->drives[d].joint].name;
+    const mt_drive *const own = own_drive(sys, joint);
     char place[PLACE_SIZE] = "";
-    if (known) {
-        (void)mt_snprintf(place, sizeof place, " (%s:%d:%d)", mt_text_base_name(m->path), line,
-                          column);
+    if (own != NULL && own->trim && strcmp(own->trim_name.s, spring) == 0) {
+        name_place(sys->model, own->trim_name.addr, place, sizeof place);
     }
     return mt_fail(err, MT_E_INPUT,
                    "trim: spring \"%s\" cannot hold \"%s\": its force does no work when \"%s\" "
@@ -1038,8 +1244,9 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
     mt_placement_copy(p->sys, &p->driven, &p->at);
     const mt_status rc = find_equilibrium(p, data, mem, err);
     if (rc != MT_OK) {
-        return rc == MT_E_EQUILIBRIUM && p->sys->trim ? explain_trim(p, data, rc, mem, err)
-                                                      : rc;
+        return rc == MT_E_EQUILIBRIUM && p->sys->n_trims > 0
+                   ? explain_trim(p, data, rc, mem, err)
+                   : rc;
     }
     return p->equilibrium.null_freedoms > 0 ? anchor_loose_freedoms(p, data, anchored, mem, err)
                                             : MT_OK;
@@ -1283,7 +1490,7 @@ mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_
     if (p->equilibrium.active) {
         problem.energy = MT_ENERGY_PHYSICAL;
         problem.m = sys->n_constraints;
-        problem.trim = sys->trim;
+        problem.trim = sys->n_trims > 0;
         MT_TRY(newton_tangent(&problem, &p->at, &p->equilibrium, p->d_pose, scratch, err));
     }
     mt_arena_rewind(scratch, mark);

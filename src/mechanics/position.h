@@ -5,17 +5,6 @@
 #include "mechanics/eliminate.h"
 #include "mechanics/newton.h"
 
-/*
- * Adjoint: with x and y from the transposed equations of such a stage,
- *     H x + A^T y = pull,  A x = across,  t . x = pull_trim
- * (the last with a trimmed spring, where x has no equation of the drive's row), additional
- * forces f and gaps c change pull . q + across . lambda + pull_trim tau by -(x . f + y . c).
- * pull [nq], across [m], x [nq], y [m].
- */
-mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
-                            double pull_trim, double *x, double *y, mt_arena *scratch,
-                            mt_err *err);
-
 /* Assembly of a closed loop during a continuation: the orientation of the independent
  * constraint equations. */
 typedef struct mt_branch {
@@ -49,9 +38,9 @@ double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
  * Positions of a system at one design, each the minimiser of an energy under constraints:
  *   reference    the drawn position with its loops closed by the smallest motion (anchor
  *                energy); skipped where the drawing already closes
- *   driven       the same with the driven joint at its position; only with `drive`, and only
- *                where the equilibrium leaves freedoms without stiffness, which then stay next
- *                to the drawing
+ *   driven       the same with the driven joints at their positions; only with `drive`, and
+ *                only where the equilibrium leaves freedoms without stiffness, which then stay
+ *                next to the drawing
  *   equilibrium  the physical energy; skipped without loads
  * Each stage solves grad V + A^T lambda = 0, c = 0 by Newton with multipliers and checks its
  * residual; a stage that does not converge is an error, never a result. The derivative of a
@@ -61,7 +50,7 @@ double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
  * drawing selects one of several equilibria, and another start may lead to another one (beyond
  * a fold, across a saddle). Where it leads to the same, the last bits would depend on which
  * designs were evaluated before, and by which worker. It would save one or two of five steps.
- * Only the way of a driven joint, where nothing that it goes by has changed, need not be gone
+ * Only the way of driven joints, where nothing that they go by has changed, need not be gone
  * again (MT_POSITION_AGAIN).
  */
 typedef struct mt_state {
@@ -102,7 +91,7 @@ typedef enum mt_position_method {
 } mt_position_method;
 
 /* data holds values (input -1) with vectors computed; targets and rest values are filled here.
- * Results and work in mem. start: NULL, or the start of a driven joint instead of the reference
+ * Results and work in mem. start: NULL, or the start of driven joints instead of the reference
  * position: a sweep's last point. Fails: MT_E_ASSEMBLY (a gap, named with its joint;
  * contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under load),
  * MT_E_DEAD_CENTRE (singular.h: at the start). */

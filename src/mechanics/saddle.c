@@ -145,12 +145,12 @@ bool mt_saddle_convex(const mt_saddle *s)
 
 /*
  * With S = [H A^T; A 0] of all m equations, (x_t, y_t) = S^-1 (t, 0) and (x_d, y_d) = S^-1 (0,
- * e_d), p = t . x_d = e_d . y_t:
- *     (x, y) = S^-1 (f, b) - tau (x_t, y_t),       tau   = (e_d . y of S^-1 (f, b)) / p
- * has no multiplier of the drive, and transposed
- *     (x, y) = S^-1 (f, b) + alpha (x_d, y_d),     alpha = (pull - t . x of S^-1 (f, b)) / p.
- * Both are S^-1 and a matrix of rank one with the norm |(x_t, y_t)| |(x_d, y_d)| / |p|, and
- * rows and columns of tau with |(x_d, y_d)| / |p| and |(x_t, y_t)| / |p|, t of length 1.
+ * e_d), columns for each trimmed spring t and its drive d, P = x_d^T t = e_d^T y_t:
+ *     (x, y) = S^-1 (f, b) - (x_t, y_t) tau,       P tau = e_d . y of S^-1 (f, b)
+ * has no multipliers of these drives, and transposed
+ *     (x, y) = S^-1 (f, b) + (x_d, y_d) alpha,     P^T alpha = pull - t . x of S^-1 (f, b).
+ * Both are S^-1 and a matrix with a norm of at most |(x_t, y_t)| |P^-1| |(x_d, y_d)|, and rows
+ * and columns of tau with |P^-1| |(x_d, y_d)| and |(x_t, y_t)| |P^-1|, each t of length 1.
  */
 
 /* |(x, y)| in the scaled coordinates of the factor. */
@@ -169,38 +169,117 @@ static double scaled_length(const mt_saddle *s, const double *x, const double *y
     return sqrt(square);
 }
 
+/* x := P^-1 x, or P^-T x. */
+static mt_status divide_by_pivot(const mt_border *border, bool transposed, double *x,
+                                 mt_arena *scratch, mt_err *err)
+{
+    const ptrdiff_t n = border->n;
+    if (n == 1) {
+        x[0] /= border->pivot[0];
+        return MT_OK;
+    }
+    double *const p = mt_arena_f64(scratch, (size_t)n, (size_t)n);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (ptrdiff_t i = 0; i < n; i++) {
+        for (ptrdiff_t j = 0; j < n; j++) {
+            p[i + (j * n)] = border->pivot[transposed ? j + (i * n) : i + (j * n)];
+        }
+    }
+    return mt_lu_solve((int)n, p, 1, x, NULL, scratch, err);
+}
+
+/* |P^-1|_F, rows and columns in units of 1 / row and 1 / unit; not finite where P is singular.
+ * */
+static mt_status pivot_inverse_norm(const mt_border *border, const double *unit,
+                                    const double *row, double *norm, mt_arena *scratch,
+                                    mt_err *err)
+{
+    const ptrdiff_t n = border->n;
+    double squares = 0.0;
+    double *const column = mt_arena_f64(scratch, (size_t)n, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (ptrdiff_t j = 0; j < n; j++) {
+        memset(column, 0, (size_t)n * sizeof *column);
+        column[j] = 1.0;
+        const mt_status rc = divide_by_pivot(border, false, column, scratch, NULL);
+        if (rc == MT_E_MEMORY) {
+            return mt_fail_memory(err);
+        }
+        for (ptrdiff_t i = 0; i < n; i++) {
+            const double part = rc == MT_OK ? column[i] * unit[i] * row[j] : HUGE_VAL;
+            squares += part * part;
+        }
+    }
+    *norm = sqrt(squares);
+    return MT_OK;
+}
+
+/* The solutions for t and for the drives' equations, and P. */
+static mt_status solve_border(mt_border *out, mt_arena *mem, mt_err *err)
+{
+    const mt_saddle *const s = &out->s;
+    const ptrdiff_t nq = s->sys->nq;
+    const ptrdiff_t m = s->m;
+    const ptrdiff_t n = out->n;
+    out->x_along = mt_arena_f64(mem, (size_t)nq, (size_t)n);
+    out->y_along = mt_arena_f64(mem, (size_t)m, (size_t)n);
+    out->x_drive = mt_arena_f64(mem, (size_t)nq, (size_t)n);
+    out->y_drive = mt_arena_f64(mem, (size_t)m, (size_t)n);
+    out->pivot = mt_arena_f64(mem, (size_t)n, (size_t)n);
+    double *const unit_drive = mt_arena_f64(mem, (size_t)m, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (ptrdiff_t d = 0; d < n; d++) {
+        const ptrdiff_t drive = m - n + d;
+        unit_drive[drive] = 1.0;
+        MT_TRY(mt_saddle_solve(s, out->along + (d * nq), NULL, out->x_along + (d * nq),
+                               out->y_along + (d * m), mem, err));
+        MT_TRY(mt_saddle_solve(s, NULL, unit_drive, out->x_drive + (d * nq),
+                               out->y_drive + (d * m), mem, err));
+        unit_drive[drive] = 0.0;
+    }
+    for (ptrdiff_t i = 0; i < n; i++) {
+        for (ptrdiff_t j = 0; j < n; j++) {
+            out->pivot[i + (j * n)] =
+                mt_dot((int)nq, out->along + (j * nq), out->x_drive + (i * nq));
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_border_init(const mt_saddle *s, const double *along, double most, mt_arena *mem,
                          mt_border *out, bool *sure, mt_err *err)
 {
     const mt_layout *const o = s->sys->layout;
-    const int nq = s->sys->nq;
-    const size_t m = (size_t)s->m;
-    const int drive = s->m - 1;
-    double unit = 0.0;
-    *out = (mt_border){.s = *s, .along = along};
-    out->x_along = mt_arena_f64(mem, (size_t)nq, 1);
-    out->y_along = mt_arena_f64(mem, m, 1);
-    out->x_drive = mt_arena_f64(mem, (size_t)nq, 1);
-    out->y_drive = mt_arena_f64(mem, m, 1);
-    double *const unit_drive = mt_arena_f64(mem, m, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    unit_drive[drive] = 1.0;
-    MT_TRY(mt_saddle_solve(s, along, NULL, out->x_along, out->y_along, mem, err));
-    MT_TRY(mt_saddle_solve(s, NULL, unit_drive, out->x_drive, out->y_drive, mem, err));
-    out->pivot = mt_dot(nq, along, out->x_drive);
-    for (int j = 0; j < nq; j++) {
-        unit = hypot(unit, along[j] * s->d[o->state[j]]);
+    const ptrdiff_t nq = s->sys->nq;
+    const ptrdiff_t m = s->m;
+    double unit[MT_DRIVES_MOST] = {0.0}; /* |t|, of which it is one with length 1 */
+    double row[MT_DRIVES_MOST]; /* of an equation, of the length that the factor gives it */
+    double by_force = 0.0;
+    double by_drive = 0.0;
+    double inverse = 0.0;
+    *out = (mt_border){.s = *s, .n = s->sys->n_trims, .along = along};
+    MT_TRY(solve_border(out, mem, err));
+    *sure = true;
+    for (ptrdiff_t d = 0; d < out->n && *sure; d++) {
+        for (ptrdiff_t j = 0; j < nq; j++) {
+            unit[d] = hypot(unit[d], along[j + (d * nq)] * s->d[o->state[j]]);
+        }
+        row[d] = s->d[o->equation[m - out->n + d]];
+        *sure = unit[d] > 0.0 && (out->n > 1 || fabs(out->pivot[0]) > 0.0);
     }
-    *sure = unit > 0.0 && fabs(out->pivot) > 0.0;
     if (!*sure) {
         return MT_OK;
     }
-    /* of a t of length 1, and of an equation of the length that the factor gives it */
-    const double row = s->d[o->equation[drive]];
-    const double by_force = scaled_length(s, out->x_along, out->y_along) * s->scale / unit;
-    const double by_drive = scaled_length(s, out->x_drive, out->y_drive) / row;
-    const double pivot = fabs(out->pivot) / unit / row;
-    const double norm = fmax(fmax(by_force, by_drive), by_force * by_drive) / pivot;
+    for (ptrdiff_t d = 0; d < out->n; d++) {
+        const double force =
+            scaled_length(s, out->x_along + (d * nq), out->y_along + (d * m)) * s->scale;
+        const double drive =
+            scaled_length(s, out->x_drive + (d * nq), out->y_drive + (d * m)) / row[d];
+        by_force = hypot(by_force, force / unit[d]);
+        by_drive = hypot(by_drive, drive);
+    }
+    MT_TRY(pivot_inverse_norm(out, unit, row, &inverse, mem, err));
+    const double norm = fmax(fmax(by_force, by_drive), by_force * by_drive) * inverse;
     *sure = norm <= most;
     return MT_OK;
 }
@@ -209,21 +288,35 @@ mt_status mt_border_solve(const mt_border *border, const double *f, const double
                           double *y, double *tau, mt_arena *scratch, mt_err *err)
 {
     const mt_saddle *const s = &border->s;
+    const ptrdiff_t nq = s->sys->nq;
+    const ptrdiff_t m = s->m;
+    const ptrdiff_t rest = m - border->n;
     MT_TRY(mt_saddle_solve(s, f, b, x, y, scratch, err));
-    *tau = y[s->m - 1] / border->pivot;
-    mt_axpy(s->sys->nq, -*tau, border->x_along, x);
-    mt_axpy(s->m - 1, -*tau, border->y_along, y);
-    y[s->m - 1] = 0.0;
+    memcpy(tau, y + rest, (size_t)border->n * sizeof *tau);
+    MT_TRY(divide_by_pivot(border, false, tau, scratch, err));
+    for (ptrdiff_t d = 0; d < border->n; d++) {
+        mt_axpy((int)nq, -tau[d], border->x_along + (d * nq), x);
+        mt_axpy((int)rest, -tau[d], border->y_along + (d * m), y);
+    }
+    memset(y + rest, 0, (size_t)border->n * sizeof *y);
     return MT_OK;
 }
 
 mt_status mt_border_adjoint(const mt_border *border, const double *f, const double *b,
-                            double pull, double *x, double *y, mt_arena *scratch, mt_err *err)
+                            const double *pull, double *x, double *y, mt_arena *scratch,
+                            mt_err *err)
 {
     const mt_saddle *const s = &border->s;
+    const ptrdiff_t nq = s->sys->nq;
+    double alpha[MT_DRIVES_MOST];
     MT_TRY(mt_saddle_solve(s, f, b, x, y, scratch, err));
-    const double alpha = (pull - mt_dot(s->sys->nq, border->along, x)) / border->pivot;
-    mt_axpy(s->sys->nq, alpha, border->x_drive, x);
-    mt_axpy(s->m, alpha, border->y_drive, y);
+    for (ptrdiff_t d = 0; d < border->n; d++) {
+        alpha[d] = pull[d] - mt_dot((int)nq, border->along + (d * nq), x);
+    }
+    MT_TRY(divide_by_pivot(border, true, alpha, scratch, err));
+    for (ptrdiff_t d = 0; d < border->n; d++) {
+        mt_axpy((int)nq, alpha[d], border->x_drive + (d * nq), x);
+        mt_axpy(s->m, alpha[d], border->y_drive + ((ptrdiff_t)s->m * d), y);
+    }
     return MT_OK;
 }

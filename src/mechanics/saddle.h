@@ -45,20 +45,22 @@ mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, 
 bool mt_saddle_convex(const mt_saddle *s);
 
 /*
- * The saddle-point system of a trimmed stage, by the factor of the one in which the drive is
- * held by its multiplier: the last equation stays, what holds it is a force tau along t,
+ * The saddle-point system of a trimmed stage, by the factor of the one in which the drives are
+ * held by their multipliers: the last equations stay, what holds them are forces tau along t (a
+ * column for each of them),
  *     [ H   A_1^T  t ] [ x ]   [ f   ]
  *     [ A_1   0    0 ] [ y ] = [ b_1 ]
  *     [ a_d   0    0 ] [tau]   [ b_d ].
  */
 typedef struct mt_border {
     mt_saddle s;         /* factored */
-    const double *along; /* [nq] t; NULL: nothing is trimmed */
-    double *x_along;     /* [nq], [m] of S^-1 (t, 0) */
+    int n;               /* trimmed springs */
+    const double *along; /* nq x n, t; NULL: nothing is trimmed */
+    double *x_along;     /* nq x n, m x n of S^-1 (t, 0) */
     double *y_along;
-    double *x_drive; /* [nq], [m] of S^-1 (0, e_d) */
+    double *x_drive; /* nq x n, m x n of S^-1 (0, e_d) */
     double *y_drive;
-    double pivot; /* t . x_drive */
+    double *pivot; /* n x n, x_drive . t */
 } mt_border;
 
 /* For the factored s, with t in `along`, which is kept. *sure: the inverse of the whole, in
@@ -66,11 +68,12 @@ typedef struct mt_border {
  * MT_E_MEMORY. */
 mt_status mt_border_init(const mt_saddle *s, const double *along, double most, mt_arena *mem,
                          mt_border *out, bool *sure, mt_err *err);
-/* f [nq], b [m]; x [nq], y [m], whose last entry is 0, and tau. */
+/* f [nq], b [m]; x [nq], y [m], whose last n entries are 0, and tau [n]. */
 mt_status mt_border_solve(const mt_border *border, const double *f, const double *b, double *x,
                           double *y, double *tau, mt_arena *scratch, mt_err *err);
-/* The transposed system: t . x = pull, and a multiplier for the drive's equation in y. */
+/* The transposed system: t . x = pull [n], and multipliers for the drives' equations in y. */
 mt_status mt_border_adjoint(const mt_border *border, const double *f, const double *b,
-                            double pull, double *x, double *y, mt_arena *scratch, mt_err *err);
+                            const double *pull, double *x, double *y, mt_arena *scratch,
+                            mt_err *err);
 
 #endif

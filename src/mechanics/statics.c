@@ -177,9 +177,10 @@ static mt_cx element_force(const rest_place *p, int spring, int side)
     const mt_system *const sys = p->data->sys;
     const mt_spring_def *const s = &sys->springs[spring];
     const mt_stage *const stage = &p->lin->position.equilibrium;
-    if (sys->trim && sys->trim_spring == spring && stage->active) {
-        return cx_make(stage->trim_force + stage->left.trim,
-                       p->slope ? stage->d_trim_force : 0.0);
+    const int trim = mt_system_trim_of(sys, spring);
+    if (trim >= 0 && stage->active) {
+        return cx_make(stage->trim_force.of[trim] + stage->left.trim.of[trim],
+                       p->slope ? stage->d_trim_force.of[trim] : 0.0);
     }
     const mt_cx k = mt_data_scalar(p->data, s->stiffness, 0.0);
     return s->measure[0] == s->measure[1]
@@ -244,7 +245,7 @@ static mt_cx weight_of(const rest_place *p, int i, int axis, const mt_cx arm[3])
 /* True where equation i of the joint acts: that of a drive does not where a spring holds it. */
 static bool acts(const mt_system *sys, int i, int joint)
 {
-    return sys->constraints[i].joint == joint && !(sys->trim && i == sys->drive_constraint);
+    return sys->constraints[i].joint == joint && i < sys->n_constraints - sys->n_trims;
 }
 
 static mt_cx multiplier(const rest_place *p, int i)
@@ -314,16 +315,24 @@ static mt_status admit_joint(mt_linear *lin, const rest_place *p, const mt_stati
                          sys->joints[q->index].name, names[q->axis]);
 }
 
+/* The equation of the drive of a joint, which is driven. */
+static int drive_constraint(const mt_system *sys, int joint)
+{
+    return sys->drives[mt_system_drive_of(sys, joint)].constraint;
+}
+
 static mt_status admit_hold(const mt_system *sys, const mt_static *q, mt_err *err)
 {
     const char *const name = sys->joints[q->index].name;
-    if (sys->driven && sys->drive_joint == q->index && !sys->trim) {
+    const int drive = mt_system_drive_of(sys, q->index);
+    const int spring = drive < 0 ? -1 : sys->drives[drive].spring;
+    if (drive >= 0 && spring < 0) {
         return MT_OK;
     }
-    return sys->driven && sys->drive_joint == q->index
+    return drive >= 0
                ? mt_fail(err, MT_E_USAGE,
                          "joint \"%s\" is held by a spring here: its force is \"spring.%s\"",
-                         name, sys->springs[sys->trim_spring].name)
+                         name, sys->springs[spring].name)
                : mt_fail(err, MT_E_USAGE, "joint \"%s\" is not driven here: nothing holds it",
                          name);
 }
@@ -345,7 +354,7 @@ static mt_cx read_quantity(const rest_place *p, const mt_static *q)
     case MT_STATIC_JOINT:
         return read_joint(p, q);
     case MT_STATIC_HOLD:
-        return -multiplier(p, p->data->sys->drive_constraint);
+        return -multiplier(p, drive_constraint(p->data->sys, q->index));
     }
     return nan("");
 }

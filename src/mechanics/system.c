@@ -198,8 +198,8 @@ static mt_status add_sensors(mt_builder *b, const double *original)
     return rc;
 }
 
-/* The driven joint: that of the configuration, or one that the caller names, whose position is
- * then an input. */
+/* The driven joints: those of the configuration, and ones that the caller names, whose
+ * positions are then inputs. */
 
 /* Who drives what, in names: `who` begins the message where something is wrong. */
 typedef struct request {
@@ -207,6 +207,7 @@ typedef struct request {
     const char *joint;
     mt_node position;
     const char *spring; /* NULL: lock */
+    int input;          /* that the position is; -1: none */
 } request;
 
 static mt_status no_such_joint(mt_builder *b, const request *r, int found)
@@ -233,70 +234,139 @@ static mt_status no_such_joint(mt_builder *b, const request *r, int found)
                    nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
 }
 
-static mt_status find_spring(mt_builder *b, const request *r)
+static mt_status find_spring(mt_builder *b, const request *r, int *spring)
 {
     mt_system *const sys = b->sys;
-    for (int i = 0; i < sys->n_springs && sys->trim_spring < 0; i++) {
+    *spring = -1;
+    for (int i = 0; i < sys->n_springs && *spring < 0; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         if (!s->damper && s->measure[0] == s->measure[1] && strcmp(s->name, r->spring) == 0) {
-            sys->trim_spring = i;
+            *spring = i;
         }
     }
-    if (sys->trim_spring < 0) {
+    if (*spring < 0) {
         return mt_fail(b->err, MT_E_INPUT,
                        "%s: there is no spring \"%s\" to hold it in configuration \"%s\"",
                        r->who, r->spring, b->model->configurations[sys->configuration].name.s);
     }
-    return MT_OK;
+    return mt_system_trim_of(sys, *spring) < 0
+               ? MT_OK
+               : mt_fail(b->err, MT_E_INPUT, "%s: spring \"%s\" already holds another joint",
+                         r->who, r->spring);
 }
 
 static mt_status drive(mt_builder *b, const request *r)
 {
     mt_system *const sys = b->sys;
-    const int joint = mt_system_find_joint(sys, r->joint);
-    if (joint < 0 || sys->joints[joint].coordinate < 0) {
-        return no_such_joint(b, r, joint);
+    mt_drive_def def = {.position = r->position, .spring = -1, .input = r->input};
+    def.joint = mt_system_find_joint(sys, r->joint);
+    if (def.joint < 0 || sys->joints[def.joint].coordinate < 0) {
+        return no_such_joint(b, r, def.joint);
     }
-    sys->drive = r->position;
-    sys->drive_joint = joint;
-    sys->driven = true;
-    sys->drive_constraint = sys->n_constraints;
-    mt_build_constraint(b, sys->joints[joint].coordinate, MT_NO_NODE, false);
+    if (mt_system_drive_of(sys, def.joint) >= 0) {
+        return mt_fail(b->err, MT_E_INPUT, "%s: joint \"%s\" is driven twice", r->who,
+                       r->joint);
+    }
+    if (sys->n_drives == MT_DRIVES_MOST) {
+        return mt_fail(b->err, MT_E_INPUT, "%s: at most %d joints are driven", r->who,
+                       (int)MT_DRIVES_MOST);
+    }
+    if (r->spring != NULL) {
+        MT_TRY(find_spring(b, r, &def.spring));
+        sys->n_trims++;
+    }
+    def.constraint = sys->n_constraints;
+    mt_build_constraint(b, sys->joints[def.joint].coordinate, MT_NO_NODE, false);
     if (!mt_arena_failed(&sys->mem)) {
-        sys->constraints[sys->drive_constraint].joint = joint;
+        sys->constraints[def.constraint].joint = def.joint;
     }
-    sys->trim = r->spring != NULL;
-    return sys->trim ? find_spring(b, r) : MT_OK;
+    sys->driven = true;
+    sys->drives[sys->n_drives++] = def;
+    return MT_OK;
 }
 
-static mt_status build_drive(mt_builder *b)
+/* The drives of the caller that are locked, or those that springs hold. */
+static mt_status drive_for_caller(mt_builder *b, bool trimmed)
 {
     mt_system *const sys = b->sys;
-    const mt_configuration *const c = &b->model->configurations[sys->configuration];
-    sys->drive_constraint = -1;
-    sys->drive_joint = -1;
-    sys->trim_spring = -1;
-    if (b->drive != NULL) {
+    int input = sys->n_inputs;
+    for (int i = b->n_drives - 1; i >= 0; i--) {
+        input -= b->drive[i].fixed ? 0 : 1;
+    }
+    for (int i = 0; i < b->n_drives; i++) {
+        const mt_system_drive *const own = &b->drive[i];
+        const int at = own->fixed ? -1 : input++;
+        if ((own->spring != NULL) != trimmed) {
+            continue;
+        }
         const request r = {
             .who = "drive",
-            .joint = b->drive->joint,
-            .position = b->drive->fixed
-                            ? mt_program_const(&sys->program, b->drive->position)
-                            : mt_program_input(&sys->program, sys->n_inputs - 1, MT_NO_ADDR),
-            .spring = b->drive->spring,
+            .joint = own->joint,
+            .position = own->fixed ? mt_program_const(&sys->program, own->position)
+                                   : mt_program_input(&sys->program, at, MT_NO_ADDR),
+            .spring = own->spring,
+            .input = at,
         };
-        return drive(b, &r);
+        MT_TRY(drive(b, &r));
     }
-    if (!c->drive.given) {
-        return MT_OK;
+    return MT_OK;
+}
+
+static bool is_drive_of_caller(const mt_builder *b, const char *joint)
+{
+    for (int i = 0; i < b->n_drives; i++) {
+        if (strcmp(b->drive[i].joint, joint) == 0) {
+            return true;
+        }
     }
-    const request r = {
-        .who = mt_build_name(b, "drive of configuration \"%s\"", c->name.s),
-        .joint = b->model->joints[c->drive.joint].name.s,
-        .position = mt_build_num(b, c->drive.position),
-        .spring = c->drive.trim ? b->model->springs[c->drive.trim_spring].name.s : NULL,
-    };
-    return drive(b, &r);
+    return false;
+}
+
+/* True where the configuration's own drives stay, but for those of the caller's joints. */
+static bool own_drives_stay(const mt_builder *b)
+{
+    const mt_configuration *const c = &b->model->configurations[b->sys->configuration];
+    bool all = true;
+    for (int i = 0; i < b->n_drives; i++) {
+        bool own = false;
+        for (int k = 0; k < c->n_drives; k++) {
+            own = own ||
+                  strcmp(b->model->joints[c->drives[k].joint].name.s, b->drive[i].joint) == 0;
+        }
+        all = all && own;
+    }
+    return all;
+}
+
+static mt_status drive_of_configuration(mt_builder *b, bool trimmed)
+{
+    const mt_configuration *const c = &b->model->configurations[b->sys->configuration];
+    const bool stay = own_drives_stay(b);
+    for (int i = 0; i < c->n_drives && stay; i++) {
+        const mt_drive *const own = &c->drives[i];
+        const char *const joint = b->model->joints[own->joint].name.s;
+        if (own->trim != trimmed || is_drive_of_caller(b, joint)) {
+            continue;
+        }
+        const request r = {
+            .who = mt_build_name(b, "drive of configuration \"%s\"", c->name.s),
+            .joint = joint,
+            .position = mt_build_num(b, own->position),
+            .spring = trimmed ? b->model->springs[own->trim_spring].name.s : NULL,
+            .input = -1,
+        };
+        MT_TRY(drive(b, &r));
+    }
+    return MT_OK;
+}
+
+static mt_status build_drives(mt_builder *b)
+{
+    for (int trimmed = 0; trimmed < 2; trimmed++) {
+        MT_TRY(drive_for_caller(b, trimmed == 1));
+        MT_TRY(drive_of_configuration(b, trimmed == 1));
+    }
+    return MT_OK;
 }
 
 /*
@@ -435,7 +505,9 @@ static void build_damping(mt_builder *b)
 static void include_places(const mt_system *sys, uint64_t *set)
 {
     const mt_program *const p = &sys->program;
-    mt_program_include_inputs(p, sys->drive, set);
+    for (int i = 0; i < sys->n_drives; i++) {
+        mt_program_include_inputs(p, sys->drives[i].position, set);
+    }
     for (int i = 0; i < sys->n_vecs; i++) {
         for (int k = 0; k < 3; k++) {
             mt_program_include_inputs(p, sys->vecs[i].node[k], set);
@@ -1085,15 +1157,21 @@ static mt_status build_parts(mt_builder *b, const double *at)
     MT_TRY(mt_build_joints(b));
     MT_TRY(mt_build_springs(b));
     MT_TRY(build_loads(b));
-    MT_TRY(build_drive(b));
+    MT_TRY(build_drives(b));
     build_damping(b);
     return add_sensors(b, at);
 }
 
-static mt_status build(mt_system *sys, const mt_system_drive *drive, const double *at,
-                       mt_err *err)
+/* Drives that a caller names. */
+static int drives_of(const mt_system_def *def)
 {
-    mt_builder b = {.drive = drive};
+    return def->drive == NULL ? 0 : def->n_drives > 0 ? def->n_drives : 1;
+}
+
+static mt_status build(mt_system *sys, const mt_system_def *def, mt_err *err)
+{
+    const double *const at = def->at;
+    mt_builder b = {.drive = def->drive, .n_drives = drives_of(def)};
     const size_t n_parameters = (size_t)sys->model->n_parameters;
     int *const is_input = mt_arena_int(&sys->mem, n_parameters + 1);
     sys->parameters = mt_arena_alloc(&sys->mem, n_parameters + 1, sizeof *sys->parameters);
@@ -1134,17 +1212,21 @@ mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *er
         sys->run = mt_run_or_none(def->run);
         sys->configuration = def->configuration;
         sys->dimension = def->model->dimension;
-        sys->n_inputs = n_inputs + (def->drive != NULL && !def->drive->fixed ? 1 : 0);
-        sys->drive = MT_NO_NODE;
-        sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
+        sys->n_inputs = n_inputs;
+        for (int i = 0; i < drives_of(def); i++) {
+            sys->n_inputs += def->drive[i].fixed ? 0 : 1;
+        }
+        sys->inputs = mt_arena_int(&sys->mem, (size_t)sys->n_inputs + 1);
         rc = mt_arena_check(&sys->mem, err);
     }
     if (rc == MT_OK && sys->inputs != NULL) {
         if (n_inputs > 0) {
             memcpy(sys->inputs, def->inputs, (size_t)n_inputs * sizeof *def->inputs);
         }
-        sys->inputs[n_inputs] = MT_ABSENT;
-        rc = build(sys, def->drive, def->at, err);
+        for (int i = n_inputs; i <= sys->n_inputs; i++) {
+            sys->inputs[i] = MT_ABSENT;
+        }
+        rc = build(sys, def, err);
     }
     if (rc != MT_OK) {
         mt_system_delete(sys);
@@ -1181,6 +1263,26 @@ void mt_system_delete(mt_system *sys)
 static bool system_beams_shape(const mt_system *sys)
 {
     return sys->loaded || !sys->drawn_closed;
+}
+
+int mt_system_drive_of(const mt_system *sys, int joint)
+{
+    for (int i = 0; i < sys->n_drives; i++) {
+        if (sys->drives[i].joint == joint) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int mt_system_trim_of(const mt_system *sys, int spring)
+{
+    for (int i = 0; i < sys->n_trims; i++) {
+        if (sys->drives[sys->n_drives - sys->n_trims + i].spring == spring) {
+            return i;
+        }
+    }
+    return -1;
 }
 
 int mt_system_find_channel(const mt_system *sys, const char *name)

@@ -155,6 +155,15 @@ typedef struct mt_item_def { /* what `mass` counts: bodies, links, bars */
     mt_node mass; /* MT_NO_NODE: none */
 } mt_item_def;
 
+/* A driven joint. */
+typedef struct mt_drive_def {
+    mt_node position; /* of the joint's coordinate, from the reference position */
+    int joint;        /* of the system's joints */
+    int constraint;
+    int spring; /* of the system's springs: trimmed to hold it; -1: locked */
+    int input;  /* that its position is, of a caller's drive that is not fixed; -1: none */
+} mt_drive_def;
+
 /* Damping in addition to dampers and loss factors (model.h: mt_damping), as nodes; MT_NO_NODE:
  * none. */
 typedef struct mt_damping_def {
@@ -187,7 +196,7 @@ typedef struct mt_system {
     MT_LIST_OF(mt_vec_def, vecs);
     MT_LIST_OF(mt_measure_def, measures);
     MT_LIST_OF(mt_state_body, bodies);
-    MT_LIST_OF(mt_constraint_def, constraints); /* that of `drive` last */
+    MT_LIST_OF(mt_constraint_def, constraints); /* those of `drives` last, in their order */
     MT_LIST_OF(mt_system_joint, joints);
     MT_LIST_OF(mt_spring_def, springs);
     MT_LIST_OF(mt_inertia_def, inertias);
@@ -197,12 +206,11 @@ typedef struct mt_system {
     mt_damping_def damping;
     bool loaded; /* gravity, preload or free length present: the equilibrium must be found */
     bool driven;
-    mt_node drive;        /* position of the driven joint's coordinate */
-    int drive_constraint; /* its constraint; -1 */
-    int drive_joint;      /* of joints; -1 */
-    /* held by a spring: the linearised system has no constraint of the drive */
-    bool trim;
-    int trim_spring; /* of springs; -1 */
+    /* driven joints: locked ones first, then those that springs hold, for which the linearised
+     * system has no constraint */
+    int n_drives;
+    int n_trims; /* held by springs: the last of them */
+    mt_drive_def drives[MT_DRIVES_MOST];
     /* inputs, as bit sets of the program: those of vectors and targets; those and the sections
      * of beams; those and the positions of sensors; those of the equilibrium in addition */
     uint64_t *places;
@@ -225,7 +233,9 @@ typedef struct mt_system {
  */
 mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_system **out, mt_err *err);
-/* A joint driven from outside; replaces the configuration's own drive. */
+/* A joint driven from outside. It takes the place of the configuration's own drive of that
+ * joint, and the other drives of the configuration stay; where it has no drive of that joint
+ * all of its drives are released. */
 typedef struct mt_system_drive {
     const char *joint;  /* a joint with a coordinate, or a link's hinge ("beam.h3") */
     const char *spring; /* trimmed to hold it; NULL: locked */
@@ -237,17 +247,22 @@ typedef struct mt_system_def {
     const mt_model *model;
     const mt_run *run; /* checked and updated by all work on the system; NULL: none */
     int configuration;
-    const mt_system_drive *drive; /* NULL: none but the configuration's own */
+    const mt_system_drive *drive; /* [n_drives]; NULL: none but the configuration's own */
+    int n_drives;                 /* 0 with a drive: 1 */
     int n_inputs;
     const int *inputs; /* [n_inputs] indices of parameters */
-    const double *at;  /* [n_inputs], and one more with a drive that is not fixed */
+    const double *at;  /* [n_inputs], and one more for each drive that is not fixed */
 } mt_system_def;
-/* mt_system_new within a run. The position of a drive [rad or m from the reference position]
- * is an additional, last input: at[n_inputs + 1], and the system has n_inputs + 1 inputs; a
- * fixed drive adds none. Fails as mt_system_new; MT_E_INPUT: no such joint or spring. */
+/* mt_system_new within a run. The positions of drives [rad or m from the reference position]
+ * are additional, last inputs, in their order: at[n_inputs + n_drives], and the system has as
+ * many inputs; a fixed drive adds none. Fails as mt_system_new; MT_E_INPUT: no such joint or
+ * spring, or one twice. */
 mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 
+/* Index among the drives of a joint, and among the trimmed springs, of a spring; -1: none. */
+int mt_system_drive_of(const mt_system *sys, int joint);
+int mt_system_trim_of(const mt_system *sys, int spring);
 int mt_system_find_channel(const mt_system *sys, const char *name);
 int mt_system_find_joint(const mt_system *sys, const char *name);
 

@@ -153,9 +153,9 @@ static void drive_defaults(void *item, mt_addr addr, int which)
 {
     mt_drive *const d = item;
     (void)which;
-    d->given = addr != MT_NO_ADDR;
     d->joint = MT_ABSENT;
     d->trim_spring = MT_ABSENT;
+    d->position = MT_ABSENT;
     d->addr = addr;
 }
 
@@ -163,7 +163,11 @@ static void drive_finish(mt_reader *r, const mt_object *o, int which, void *item
 {
     const mt_drive *const d = item;
     (void)which;
-    if (d->given && d->position_is_angle == (mt_object_value(o, "position_m") != MT_NO_ADDR)) {
+    const bool displaced = mt_object_value(o, "position_m") != MT_NO_ADDR;
+    if (d->release && (d->position_is_angle || displaced || d->hold_given)) {
+        mt_diag_error(r->diags, o->addr,
+                      "a joint that is free has neither a position nor a hold");
+    } else if (!d->release && d->position_is_angle == displaced) {
         mt_diag_error(r->diags, o->addr, "give either \"position_rad\" or \"position_m\"");
     }
 }
@@ -185,6 +189,10 @@ static const mt_key DRIVE[] = {
               .schema = "\"anyOf\": [{\"type\": \"string\", \"enum\": [\"lock\"]}, {\"$ref\": "
                         "\"#/definitions/hold\"}]",
               .read = read_hold),
+    MT_M_FLAG("free", false, release,
+              "true: the joint, which the configuration that this one is like drives, is not "
+              "driven; without position and hold.",
+              .otherwise = "false"),
     MT_M_DESCRIPTION,
     MT_M_SOURCE,
 };
@@ -192,6 +200,18 @@ static const mt_key DRIVE[] = {
 const mt_key_table mt_drive_keys = {MT_I_TABLE("drive", DRIVE, mt_drive),
                                     .defaults = drive_defaults, .finish = drive_finish,
                                     .says = "A joint that is put to a position."};
+
+/* One drive, or a list of them. */
+static void read_drives(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_configuration *const c = item;
+    const bool list = value != MT_NO_ADDR && mt_json_type_of(r->doc, value) == MT_JSON_ARRAY;
+    mt_read_items(r, key, value, item);
+    c->n_own_drives = c->n_drives;
+    for (int i = 0; i < c->n_drives; i++) {
+        c->drives[i].item = list ? i : -1;
+    }
+}
 
 /* A bare number is in the parameter's own unit. */
 static void read_override(mt_model_reader *mr, mt_addr value, mt_override *o)
@@ -227,15 +247,24 @@ static void read_overrides(mt_reader *r, const mt_key *key, mt_addr object, void
 static const mt_key CONFIGURATION[] = {
     MT_M_REF("like", false, like_name,
              "Configuration whose items and settings are taken over; parameters given here are "
-             "replaced one by one, gravity, drive and damping as a whole. An own drive must be "
-             "of the joint that the inherited one drives."),
+             "replaced one by one, drives joint by joint, gravity and damping as a whole."),
     MT_M_JUST("parameters", OBJECT, false, ANY,
               "Parameters with another value in this configuration.",
               .schema = MT_I_BY_NAME(MT_I_NAMES_WORD, MT_I_OF("number")),
               .read = read_overrides),
     MT_I_VECTOR("gravity_m_per_s2", gravity, has_gravity, GRAVITY,
                 "Acceleration of gravity in this configuration [m/s^2]."),
-    MT_M_PART("drive", false, drive, mt_drive, mt_drive_keys, NULL),
+    {.name = "drive",
+     .type = MT_KEY_OBJECT_OR_LIST,
+     .read = read_drives,
+     .at = MT_M_PLACE(mt_drive *, drives),
+     .other = MT_M_PLACE(int, n_drives),
+     .most = MT_DRIVES_MOST,
+     .of = &mt_drive_keys,
+     .says = "The joint, or a list of the joints, that are put to positions; a joint that the "
+             "configuration is like drives stays driven unless it is named here. Several "
+             "joints are moved together, in proportion, from the drawing to their positions; "
+             "each needs a freedom of its own."},
     MT_M_PART("damping", false, damping, mt_damping, mt_damping_keys, NULL),
     MT_M_DESCRIPTION,
     MT_M_SOURCE,
@@ -245,7 +274,7 @@ const mt_key_table mt_configuration_keys = {
     MT_I_TABLE("configuration", CONFIGURATION, mt_configuration),
     .says = "A state of the mechanism."};
 
-/* Configurations: `like`, what is inherited through it (overrides, gravity, drive), and which
+/* Configurations: `like`, what is inherited through it (overrides, gravity, drives), and which
  * items each contains. */
 
 enum { UNSEEN, ON_PATH, DONE };
@@ -337,35 +366,63 @@ static void inherit_overrides(mt_resolve *f, mt_configuration *c, bool *overridd
     }
 }
 
-/* The configuration that defines the drive in force in this one. */
-static const mt_configuration *driver_of(const mt_resolve *f, const mt_configuration *c)
+static const mt_drive *drive_named(int n, const mt_drive *drives, const char *joint)
 {
-    while (c->drive.inherited) {
-        c = &f->m->configurations[c->like];
+    for (int i = 0; i < n && joint != NULL; i++) {
+        if (drives[i].joint_name.s != NULL && strcmp(drives[i].joint_name.s, joint) == 0) {
+            return &drives[i];
+        }
     }
-    return c;
+    return NULL;
 }
 
-/* A configuration has one drive: its own replaces an inherited one of the same joint. A drive
- * of another joint would release the joint that the inherited drive holds. */
-static void check_dropped_drive(mt_resolve *f, const mt_configuration *c,
-                                const mt_configuration *parent)
+/* A joint is driven once, and only a driven one can be released. parent: NULL: none. */
+static void check_own_drives(mt_resolve *f, const mt_configuration *c,
+                             const mt_configuration *parent)
 {
-    const mt_drive *const own = &c->drive;
-    const mt_drive *const other = &parent->drive;
-    if (!own->given || !other->given || own->joint_name.s == NULL ||
-        other->joint_name.s == NULL) {
-        return;
+    for (int i = 0; i < c->n_drives; i++) {
+        const mt_drive *const own = &c->drives[i];
+        const char *const joint = own->joint_name.s;
+        if (drive_named(i, c->drives, joint) != NULL) {
+            mt_diag_error(f->d, own->joint_name.addr, "joint \"%s\" is driven twice", joint);
+        } else if (own->release && joint != NULL &&
+                   (parent == NULL ||
+                    drive_named(parent->n_drives, parent->drives, joint) == NULL)) {
+            mt_diag_error(f->d, own->addr,
+                          "joint \"%s\" is free already: the configuration is like none that "
+                          "drives it",
+                          joint);
+        }
     }
-    const char *const from = driver_of(f, parent)->name.s;
-    if (strcmp(own->joint_name.s, other->joint_name.s) != 0) {
-        mt_diag_error(f->d, own->addr,
-                      "drops the inherited drive of %s: \"%s\" drives joint \"%s\", this one "
-                      "\"%s\", and a configuration has one drive; \"like\" must name a "
-                      "configuration without a drive, or one that drives \"%s\"",
-                      other->joint_name.s, from, other->joint_name.s, own->joint_name.s,
-                      own->joint_name.s);
+}
+
+/* Own drives, and inherited ones of other joints; what is released is gone. */
+static void inherit_drives(mt_resolve *f, mt_configuration *c, const mt_configuration *parent)
+{
+    const int inherited = parent == NULL ? 0 : parent->n_drives;
+    const size_t most = (size_t)c->n_drives + (size_t)inherited;
+    check_own_drives(f, c, parent);
+    mt_drive *const all = mt_arena_alloc(&f->m->mem, most, sizeof *all);
+    int n = 0;
+    for (int i = 0; i < c->n_drives && all != NULL; i++) {
+        if (!c->drives[i].release) {
+            all[n++] = c->drives[i];
+            all[n - 1].owner = (int)(c - f->m->configurations);
+        }
     }
+    for (int i = 0; i < inherited && all != NULL; i++) {
+        const mt_drive *const other = &parent->drives[i];
+        if (drive_named(c->n_drives, c->drives, other->joint_name.s) == NULL) {
+            all[n++] = *other;
+        }
+    }
+    if (n > MT_DRIVES_MOST) {
+        mt_diag_error(f->d, c->name.addr, "%d joints are driven: at most %d can be", n,
+                      (int)MT_DRIVES_MOST);
+        n = MT_DRIVES_MOST;
+    }
+    c->drives = all;
+    c->n_drives = n;
 }
 
 /* Settings in force: own, else those of the configuration it is like, else the model's. */
@@ -386,13 +443,7 @@ static void inherit(mt_resolve *f, mt_configuration *c, bool *overridden)
         c->has_gravity = true;
         memcpy(c->gravity, model_has ? f->m->gravity : parent->gravity, sizeof c->gravity);
     }
-    if (parent != NULL) {
-        check_dropped_drive(f, c, parent);
-    }
-    if (!c->drive.given && parent != NULL) {
-        c->drive = parent->drive;
-        c->drive.inherited = true;
-    }
+    inherit_drives(f, c, parent);
     if (!c->damping.given) {
         c->damping = parent != NULL ? parent->damping : f->m->damping;
         c->damping.inherited = true;
@@ -479,17 +530,13 @@ void mt_resolve_configurations(mt_resolve *f)
     resolve_all_presence(f);
 }
 
-/* The drive in force names a joint that the configuration contains and can move, and a spring
+/* A drive in force names a joint that the configuration contains and can move, and a spring
  * that it contains. */
-static void check_drive(mt_resolve *f, int index)
+static void check_drive(mt_resolve *f, int index, mt_drive *drive)
 {
     mt_model *const m = f->m;
     mt_configuration *const c = &m->configurations[index];
-    mt_drive *const drive = &c->drive;
-    const bool inherited = drive->inherited; /* unknown names have been noted where it stands */
-    if (!drive->given) {
-        return;
-    }
+    const bool inherited = drive->owner != index; /* unknown names are noted where it stands */
     drive->joint = inherited
                        ? mt_model_find_joint(m, drive->joint_name.s)
                        : mt_resolve_find(f, drive->joint_name, &m->tables->joints, "joint");
@@ -535,13 +582,56 @@ static void check_drive_unit(mt_resolve *f, const mt_drive *drive)
     }
 }
 
+/* A spring holds one joint; the error stands where this configuration says otherwise. */
+static void check_trims(mt_resolve *f, int index)
+{
+    const mt_configuration *const c = &f->m->configurations[index];
+    for (int i = 0; i < c->n_drives; i++) {
+        const mt_drive *const d = &c->drives[i];
+        for (int k = 0; k < i && d->trim_spring != MT_ABSENT; k++) {
+            const mt_drive *const other = &c->drives[k];
+            const bool same = other->trim_spring == d->trim_spring;
+            const bool later = (d->owner == index) == (other->owner == index)
+                                   ? d->addr > other->addr
+                                   : d->owner == index;
+            const mt_drive *const wrong = later ? d : other;
+            if (same && wrong->owner == index) {
+                mt_diag_error(
+                    f->d, wrong->trim_name.addr,
+                    "spring \"%s\" holds joint \"%s\" already: it cannot be trimmed to "
+                    "hold \"%s\", too",
+                    wrong->trim_name.s, (later ? other : d)->joint_name.s, wrong->joint_name.s);
+            }
+        }
+    }
+}
+
+/* Into the order of the model's joints: which configuration lists them how makes no
+ * difference. */
+static void sort_drives(mt_configuration *c)
+{
+    for (int i = 1; i < c->n_drives; i++) {
+        const mt_drive d = c->drives[i];
+        int k = i;
+        for (; k > 0 && c->drives[k - 1].joint > d.joint; k--) {
+            c->drives[k] = c->drives[k - 1];
+        }
+        c->drives[k] = d;
+    }
+}
+
 void mt_resolve_drives(mt_resolve *f)
 {
     for (int c = 0; c < f->m->n_configurations; c++) {
-        const mt_configuration *const it = &f->m->configurations[c];
-        check_drive(f, c);
-        if (it->drive.given && !it->drive.inherited && it->drive.joint != MT_ABSENT) {
-            check_drive_unit(f, &it->drive);
+        mt_configuration *const it = &f->m->configurations[c];
+        for (int i = 0; i < it->n_drives; i++) {
+            mt_drive *const drive = &it->drives[i];
+            check_drive(f, c, drive);
+            if (drive->owner == c && drive->joint != MT_ABSENT) {
+                check_drive_unit(f, drive);
+            }
         }
+        sort_drives(it);
+        check_trims(f, c);
     }
 }

@@ -394,11 +394,16 @@ static void warn_of_dropped_member(mt_lint *j, mt_addr addr, const char *member,
 
 /* The same joint, trimmed by the inherited drive and locked by the own one, which does not
  * mention the hold. */
-static void lint_hold(mt_lint *j, const mt_drive *own, const mt_drive *other)
+static void lint_hold(mt_lint *j, const mt_drive *own, const mt_configuration *parent)
 {
-    if (own->given && !own->inherited && other->given && other->trim && !own->hold_given) {
+    const mt_drive *other = NULL;
+    for (int i = 0; i < parent->n_drives; i++) {
+        other = parent->drives[i].joint == own->joint ? &parent->drives[i] : other;
+    }
+    if (own->owner == j->configuration && other != NULL && other->trim && !own->hold_given) {
         warn_of_dropped_member(
-            j, own->addr, "drive",
+            j, own->addr,
+            own->item < 0 ? "drive" : mt_arena_printf(j->out->mem, "drive/%d", own->item),
             mt_arena_printf(j->out->mem,
                             "drops the inherited \"hold\", which trims \"%s\": this drive "
                             "locks \"%s\"; write \"hold\": \"lock\" if that is meant",
@@ -436,14 +441,14 @@ static void lint_damping(mt_lint *j, const mt_damping *own, const mt_damping *ot
     }
 }
 
-/* Inherited settings that its own drive and damping drop. */
+/* Inherited settings that its own drives and damping drop. */
 static void lint_inherited(mt_lint *j)
 {
     const mt_configuration *const c = &j->model->configurations[j->configuration];
     const mt_configuration *const parent =
         c->like == MT_ABSENT ? NULL : &j->model->configurations[c->like];
-    if (parent != NULL) {
-        lint_hold(j, &c->drive, &parent->drive);
+    for (int i = 0; i < c->n_drives && parent != NULL; i++) {
+        lint_hold(j, &c->drives[i], parent);
     }
     lint_damping(j, &c->damping, parent == NULL ? &j->model->damping : &parent->damping);
 }
@@ -699,21 +704,20 @@ static void lint_joints(mt_lint *j)
     }
 }
 
-static void lint_drive(mt_lint *j)
+static void lint_drive(mt_lint *j, const mt_drive *d)
 {
-    const mt_configuration *const c = &j->model->configurations[j->configuration];
-    const double v = c->drive.given ? value_of_number(j, c->drive.position) : 0.0;
-    if (!c->drive.position_is_angle || !(fabs(v) > ONE_TURN)) {
+    const double v = value_of_number(j, d->position);
+    if (!d->position_is_angle || !(fabs(v) > ONE_TURN)) {
         return;
     }
     if (fabs(v) > MT_DRIVE_REACH) {
-        (void)mt_lint_addr(
-            j,
-            mt_warning_add(j->out, MT_LEVEL_FAULT, "drive",
-                           "\"%s\" is driven by %g rad: at most %d rad can be",
-                           c->drive.joint_name.s == NULL ? "" : c->drive.joint_name.s, v,
-                           (int)MT_DRIVE_REACH),
-            j->model->nums[c->drive.position].addr, mt_lint_drive_pointer(j, "position_rad"));
+        (void)mt_lint_addr(j,
+                           mt_warning_add(j->out, MT_LEVEL_FAULT, "drive",
+                                          "\"%s\" is driven by %g rad: at most %d rad can be",
+                                          d->joint_name.s == NULL ? "" : d->joint_name.s, v,
+                                          (int)MT_DRIVE_REACH),
+                           j->model->nums[d->position].addr,
+                           mt_lint_drive_pointer(j, d, "position_rad"));
         return;
     }
     (void)mt_lint_addr(
@@ -721,8 +725,8 @@ static void lint_drive(mt_lint *j)
         mt_warning_add(j->out, MT_LEVEL_WARNING, "drive",
                        "\"%s\" is driven by %g rad, more than a turn: degrees are written "
                        "\"%g*deg\"",
-                       c->drive.joint_name.s == NULL ? "" : c->drive.joint_name.s, v, v),
-        j->model->nums[c->drive.position].addr, mt_lint_drive_pointer(j, "position_rad"));
+                       d->joint_name.s == NULL ? "" : d->joint_name.s, v, v),
+        j->model->nums[d->position].addr, mt_lint_drive_pointer(j, d, "position_rad"));
 }
 
 static void lint_parameters(mt_lint *j)
@@ -753,7 +757,10 @@ void mt_model_lint(const mt_model *model, int configuration, const double *value
     lint_springs(&j);
     lint_joints(&j);
     lint_sensors(&j);
-    lint_drive(&j);
+    const mt_configuration *const c = &model->configurations[j.configuration];
+    for (int i = 0; i < c->n_drives; i++) {
+        lint_drive(&j, &c->drives[i]);
+    }
     lint_damping_in_force(&j);
     lint_inherited(&j);
     mt_lint_structure(&j);

@@ -32,13 +32,13 @@ mt_warning *mt_lint_addr(mt_lint *j, mt_warning *warning, mt_addr addr, const ch
     return warning;
 }
 
-const char *mt_lint_drive_pointer(const mt_lint *j, const char *member)
+const char *mt_lint_drive_pointer(const mt_lint *j, const mt_drive *d, const char *member)
 {
-    const mt_configuration *c = &j->model->configurations[j->configuration];
-    while (c->drive.inherited && c->like != MT_ABSENT) {
-        c = &j->model->configurations[c->like];
-    }
-    return mt_arena_printf(j->out->mem, "/configurations/%s/drive/%s", c->name.s, member);
+    const char *const owner = j->model->configurations[d->owner].name.s;
+    return d->item < 0
+               ? mt_arena_printf(j->out->mem, "/configurations/%s/drive/%s", owner, member)
+               : mt_arena_printf(j->out->mem, "/configurations/%s/drive/%d/%s", owner, d->item,
+                                 member);
 }
 
 /* The coordinates of a position; false: not known. */
@@ -161,7 +161,7 @@ static void lint_line(mt_lint *j, const mt_item *item, const mt_attach bodies[2]
  * not come from the drawing. */
 static bool needs_drawn_length(const mt_lint *j, const mt_spring *s)
 {
-    return !j->model->configurations[j->configuration].drive.given ||
+    return j->model->configurations[j->configuration].n_drives == 0 ||
            s->free_length == MT_ABSENT;
 }
 
@@ -1082,10 +1082,9 @@ static void lint_gyration(mt_lint *j, const mt_item *item, const mt_body *b, dou
     }
 }
 
-static void lint_stroke(mt_lint *j, double size)
+static void lint_stroke(mt_lint *j, const mt_drive *d, double size)
 {
-    const mt_drive *const d = &j->model->configurations[j->configuration].drive;
-    if (!d->given || d->position_is_angle || d->position == MT_ABSENT || size == 0.0 ||
+    if (d->position_is_angle || d->position == MT_ABSENT || size == 0.0 ||
         !(fabs(j->value[d->position]) > MOST_STROKE * size)) {
         return;
     }
@@ -1098,7 +1097,7 @@ static void lint_stroke(mt_lint *j, double size)
                 "that can be",
                 d->joint_name.s == NULL ? "" : d->joint_name.s, j->value[d->position], size,
                 (int)MT_DRIVE_REACH),
-            j->model->nums[d->position].addr, mt_lint_drive_pointer(j, "position_m"));
+            j->model->nums[d->position].addr, mt_lint_drive_pointer(j, d, "position_m"));
         return;
     }
     (void)mt_lint_addr(
@@ -1108,7 +1107,7 @@ static void lint_stroke(mt_lint *j, double size)
                        "millimetres?",
                        d->joint_name.s == NULL ? "" : d->joint_name.s, j->value[d->position],
                        size),
-        j->model->nums[d->position].addr, mt_lint_drive_pointer(j, "position_m"));
+        j->model->nums[d->position].addr, mt_lint_drive_pointer(j, d, "position_m"));
 }
 
 static void lint_loads(mt_lint *j)
@@ -1171,6 +1170,9 @@ void mt_lint_geometry(mt_lint *j)
         }
     }
     lint_size(j, size);
-    lint_stroke(j, size);
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
+    for (int i = 0; i < c->n_drives; i++) {
+        lint_stroke(j, &c->drives[i], size);
+    }
     lint_suspicious(j, size);
 }

@@ -23,8 +23,8 @@ typedef struct mt_item {
 /* Set the location of a warning (NULL: out of memory): address and pointer of a number. Returns
  * the warning. */
 mt_warning *mt_lint_addr(mt_lint *j, mt_warning *warning, mt_addr addr, const char *pointer);
-/* The pointer of the drive in force, which a configuration may have inherited. */
-const char *mt_lint_drive_pointer(const mt_lint *j, const char *member);
+/* The pointer of a drive in force, which a configuration may have inherited. */
+const char *mt_lint_drive_pointer(const mt_lint *j, const mt_drive *d, const char *member);
 /* Unsymmetric matrices, lines between coincident points, axes without direction. */
 void mt_lint_structure(mt_lint *j);
 /* Joints and springs away from the bodies that they hold, joints with points apart, sizes,

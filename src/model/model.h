@@ -357,8 +357,10 @@ typedef struct mt_override {
     mt_num value;
 } mt_override;
 
+/* Most joints that a configuration drives. */
+enum { MT_DRIVES_MOST = 32 };
+
 typedef struct mt_drive {
-    bool given;
     mt_name joint_name;
     int joint;
     mt_num position;        /* rad or m, relative to the reference position */
@@ -367,7 +369,9 @@ typedef struct mt_drive {
     bool trim;              /* false: locked there */
     mt_name trim_name;
     int trim_spring;
-    bool inherited; /* set by mt_model_resolve: from the configuration that this one is like */
+    bool release; /* "free": true: the joint is not driven; gone after mt_model_resolve */
+    int owner;    /* set by mt_model_resolve: the configuration where it stands */
+    int item;     /* its index in the list where it stands; -1: it stands alone */
     mt_addr addr;
 } mt_drive;
 
@@ -406,7 +410,11 @@ typedef struct mt_configuration {
     mt_override *overrides;
     bool has_gravity;
     mt_vector gravity; /* after mt_model_resolve: the one in force (inherited or the model's) */
-    mt_drive drive;    /* after mt_model_resolve: the one in force */
+    /* [n_drives] as read; after mt_model_resolve those in force, in the order of the model's
+     * joints */
+    mt_drive *drives;
+    int n_drives;
+    int n_own_drives;   /* as read */
     mt_damping damping; /* after mt_model_resolve: the one in force */
 } mt_configuration;
 

@@ -557,9 +557,12 @@ static void add_places(const mt_model *m, place_list *list)
     }
     for (int c = 0; c < m->n_configurations; c++) {
         const mt_configuration *const own = &m->configurations[c];
-        const bool drives = own->drive.given && !own->drive.inherited;
-        add_place(list, drives ? own->drive.addr : MT_NO_ADDR);
-        add_place(list, drives && own->drive.trim ? own->drive.trim_name.addr : MT_NO_ADDR);
+        for (int i = 0; i < own->n_drives; i++) {
+            const mt_drive *const drive = &own->drives[i];
+            const bool here = drive->owner == c;
+            add_place(list, here ? drive->addr : MT_NO_ADDR);
+            add_place(list, here && drive->trim ? drive->trim_name.addr : MT_NO_ADDR);
+        }
         add_place(list, own->damping.given && !own->damping.inherited ? own->damping.addr
                                                                       : MT_NO_ADDR);
     }
@@ -569,9 +572,13 @@ static void add_places(const mt_model *m, place_list *list)
 static void note_places(mt_model_reader *mr)
 {
     mt_model *const m = mr->m;
+    size_t drives = 0;
+    for (int c = 0; c < m->n_configurations; c++) {
+        drives += (size_t)m->configurations[c].n_drives;
+    }
     const size_t most = (size_t)m->n_nums + (3 * ((size_t)m->n_joints + (size_t)m->n_springs)) +
-                        (size_t)m->n_links + (size_t)m->n_loads +
-                        (3 * (size_t)m->n_configurations);
+                        (size_t)m->n_links + (size_t)m->n_loads + (size_t)m->n_configurations +
+                        (2 * drives);
     m->places = mt_arena_alloc(&m->mem, most, sizeof *m->places);
     const mt_arena_mark mark = mt_arena_get_mark(&m->mem);
     place_list list = {.addrs = mt_arena_int(&m->mem, most)};

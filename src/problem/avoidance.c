@@ -122,7 +122,7 @@ static mt_status add_cut(mt_subproblem *c, const mt_cut *cut, lists *l, mt_arena
     double *const at = mt_arena_f64(mem, (size_t)f->n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < f->n; k++) {
-        at[k] = mt_drive_positions_position(p->views[f->view[k]].original);
+        at[k] = mt_drive_positions_position(f, p->views[f->view[k]].original);
     }
     MT_TRY(mt_drive_positions_bands(p, f, at, cut->position, cut->position, mem, &way, err));
     const int n = way.n;

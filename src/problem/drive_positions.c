@@ -15,9 +15,15 @@ static const mt_system *system_of(const mt_problem *p, int view)
     return p->views[view].original->sys;
 }
 
-double mt_drive_positions_position(const mt_analysis *a)
+double mt_drive_positions_position(const mt_drive_positions *f, const mt_analysis *a)
 {
-    return a->sys->drive == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, a->sys->drive);
+    const mt_system *const sys = a->sys;
+    for (int i = 0; i < sys->n_drives; i++) {
+        if (strcmp(sys->joints[sys->drives[i].joint].name, f->joint) == 0) {
+            return mt_linear_value(a->lin, sys->drives[i].position);
+        }
+    }
+    return 0.0;
 }
 
 bool mt_drive_positions_any(const mt_problem *p)
@@ -131,33 +137,42 @@ static void find_limited(mt_problem *p)
     }
 }
 
-/* Sets the drive's joint and spring from a configuration that has the drive. */
-static void name_drive(const mt_problem *p, mt_drive_positions *f)
+/* Sets the drive's joint and spring from a configuration that has the drive. joint: of the
+ * system's joints. */
+static void name_drive(const mt_problem *p, int joint, mt_drive_positions *f)
 {
     f->fixed = true;
     for (int k = 0; k < f->n; k++) {
         const mt_system *const sys = system_of(p, f->view[k]);
-        if (sys->driven) {
+        const int at = mt_system_drive_of(sys, joint);
+        if (at >= 0) {
+            const mt_drive_def *const drive = &sys->drives[at];
             f->configuration = p->views[f->view[k]].configuration;
-            f->joint = sys->joints[sys->drive_joint].name;
-            f->spring = sys->trim ? sys->springs[sys->trim_spring].name : NULL;
-            f->angle = sys->joints[sys->drive_joint].angle;
-            f->fixed = f->fixed && mt_program_is_constant(&sys->program, sys->drive);
+            f->joint = sys->joints[joint].name;
+            f->spring = drive->spring >= 0 ? sys->springs[drive->spring].name : NULL;
+            f->angle = sys->joints[joint].angle;
+            f->fixed = f->fixed && mt_program_is_constant(&sys->program, drive->position);
         }
     }
 }
 
-/* Collects the configurations that are the same mechanism as `first`, which has no drive yet. A
+/* Collects the configurations that are the same mechanism as `first`, which has no drive yet,
+ * in another position of one joint, *joint: that of the first one that is found. A
  * configuration without a drive joins the first driven one that it equals. */
 static mt_status collect_same_mechanisms(mt_problem *p, int first, mt_drive_positions *f,
-                                         mt_err *err)
+                                         int *joint, mt_err *err)
 {
+    *joint = -1;
     f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
     MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n_views; i++) {
         bool same = i == first;
         if (mt_drive_positions_of(p, i) < 0 && !same) {
-            MT_TRY(mt_system_same_drive(system_of(p, first), system_of(p, i), &same, err));
+            int other = -1;
+            MT_TRY(
+                mt_system_same_drive(system_of(p, first), system_of(p, i), &same, &other, err));
+            same = same && (*joint < 0 || other < 0 || other == *joint);
+            *joint = same && other >= 0 ? other : *joint;
         }
         if (same) {
             f->view[f->n++] = i;
@@ -187,7 +202,7 @@ static mt_status set_moving(mt_problem *p, mt_drive_positions *f, mt_err *err)
     f->moving_at = mt_arena_f64(&p->mem, n + 1, 1);
     MT_TRY(mt_arena_check(&p->mem, err));
     memcpy(f->moving_at, p->original, n * sizeof *f->moving_at);
-    f->moving_at[n] = mt_drive_positions_position(p->views[f->view[0]].original);
+    f->moving_at[n] = mt_drive_positions_position(f, p->views[f->view[0]].original);
     const mt_status rc =
         mt_configuration_drive(p, &f->moving, &drive, f->moving_at, &f->moving.original, &own);
     if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
@@ -231,9 +246,10 @@ mt_status mt_families_init(mt_problem *p, mt_err *err)
         if (!system_of(p, i)->driven || mt_drive_positions_of(p, i) >= 0) {
             continue;
         }
-        MT_TRY(collect_same_mechanisms(p, i, &f, err));
+        int joint = -1;
+        MT_TRY(collect_same_mechanisms(p, i, &f, &joint, err));
         if (f.n > 1) {
-            name_drive(p, &f);
+            name_drive(p, joint < 0 ? system_of(p, i)->drives[0].joint : joint, &f);
             p->families[p->n_families++] = f;
         }
     }

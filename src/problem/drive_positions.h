@@ -5,12 +5,13 @@
 #include "problem/workspace.h"
 
 /*
- * Configurations that are one mechanism in several positions of one driven joint
- * (mechanics/system.h: mt_system_same_drive). Frequencies are continuous along the drive, so
- * where two positions have different numbers of modes below a band, a mode crosses it between
- * them. Bands of two positions that share frequencies are therefore tied: a design must have
- * the same number of modes below both. Between two named positions a frequency is forbidden
- * where some position on each side forbids it.
+ * Configurations that are one mechanism in several positions of one driven joint, all others
+ * that they drive in the same position (mechanics/geometry.h: mt_system_same_drive).
+ * Frequencies are continuous along the drive, so where two positions have different numbers of
+ * modes below a band, a mode crosses it between them. Bands of two positions that share
+ * frequencies are therefore tied: a design must have the same number of modes below both.
+ * Between two named positions a frequency is forbidden where some position on each side forbids
+ * it.
  */
 struct mt_drive_positions {
     int n; /* configurations, at least two */
@@ -58,7 +59,7 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
  * several positions of its drive, and is the first among equal limits there. */
 bool mt_drive_positions_limits_first(const mt_problem *p, const mt_requirement *d);
 /* Position of the drive at the last solve [rad, m]. */
-double mt_drive_positions_position(const mt_analysis *a);
+double mt_drive_positions_position(const mt_drive_positions *f, const mt_analysis *a);
 /* Index of the drive that a configuration belongs to; -1: none. */
 int mt_drive_positions_of(const mt_problem *p, int view);
 /* True where tied bands have the same number of modes below them. */

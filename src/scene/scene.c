@@ -330,7 +330,8 @@ static mt_status scene_modes(mt_scene_frame *f, const mt_modes *modes, int shown
 /*
  * The range of a driven joint: from the lowest to the highest position that any configuration
  * of the model drives it to; where there is one alone, from the reference position to that. A
- * configuration that drives nothing, but has the joint that others drive, shows their range.
+ * configuration that drives nothing, but has the joint that others drive, shows their range. Of
+ * several driven joints one is followed, and the others stay where the configuration has them.
  * Configurations that are the same but for where they hold the joint share their positions.
  * Each position is found from the one before it. Modes cost many times what a position does
  * and are found where somebody asks for them.
@@ -350,32 +351,41 @@ static mt_scene_travel travel_of(const mt_scene_frame *f, const mt_drive *drive)
     return travel == NULL ? MT_TRAVEL_MODES : travel[drive->joint];
 }
 
-/* The drive to follow: the configuration's own, else the first drive of another configuration
- * whose joint and spring this one has. */
-static const mt_drive *drive_of(const mt_scene_frame *f)
+/* How a configuration drives a joint; NULL: not at all. */
+static const mt_drive *drive_of_joint(const mt_configuration *c, int joint)
 {
-    const mt_model *const m = f->model;
-    const mt_drive *const own = &m->configurations[f->configuration].drive;
-    const mt_drive *found = own->given ? own : NULL;
-    for (int c = 0; c < m->n_configurations && found == NULL; c++) {
-        const mt_drive *const d = &m->configurations[c].drive;
-        if (d->given && mt_model_present(&m->joints[d->joint].in, f->configuration) &&
-            (!d->trim || mt_model_present(&m->springs[d->trim_spring].in, f->configuration))) {
-            found = d;
+    for (int i = 0; i < c->n_drives; i++) {
+        if (c->drives[i].joint == joint) {
+            return &c->drives[i];
         }
     }
-    return found;
+    return NULL;
 }
 
-static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
+static const mt_drive *first_followable(const mt_scene_frame *f, const mt_configuration *c)
+{
+    const mt_model *const m = f->model;
+    for (int i = 0; i < c->n_drives; i++) {
+        const mt_drive *const d = &c->drives[i];
+        if (mt_model_present(&m->joints[d->joint].in, f->configuration) &&
+            (!d->trim || mt_model_present(&m->springs[d->trim_spring].in, f->configuration))) {
+            return d;
+        }
+    }
+    return NULL;
+}
+
+/* Positions of a joint in all configurations that drive it. */
+static mt_status range_of_drive(const mt_scene_frame *f, const mt_drive *drive, range *r,
+                                mt_err *err)
 {
     const mt_model *const m = f->model;
     int n = 0;
-    *r = (range){.drive = drive_of(f), .low = HUGE_VAL, .high = -HUGE_VAL, .own = nan("")};
-    for (int c = 0; c < m->n_configurations && r->drive != NULL; c++) {
-        const mt_drive *const d = &m->configurations[c].drive;
+    *r = (range){.low = HUGE_VAL, .high = -HUGE_VAL, .own = nan("")};
+    for (int c = 0; c < m->n_configurations; c++) {
+        const mt_drive *const d = drive_of_joint(&m->configurations[c], drive->joint);
         double at = 0.0;
-        if (!d->given || d->joint != r->drive->joint) {
+        if (d == NULL) {
             continue;
         }
         MT_TRY(mt_model_number(m, c, f->ask->n_inputs, f->ask->inputs, f->ask->at, d->position,
@@ -387,11 +397,36 @@ static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
             n++;
         }
     }
-    if (n > 0 && r->low == r->high) {
+    r->drive = n > 0 ? drive : NULL;
+    return MT_OK;
+}
+
+/* The drive to follow: the first of the configuration's own whose positions differ between
+ * configurations, else its first; without any, the first drive of another configuration whose
+ * joint and spring this one has. */
+static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
+{
+    const mt_model *const m = f->model;
+    const mt_configuration *const own = &m->configurations[f->configuration];
+    const mt_drive *other = NULL;
+    *r = (range){.drive = NULL, .own = nan("")};
+    for (int i = 0; i < own->n_drives; i++) {
+        range next;
+        MT_TRY(range_of_drive(f, &own->drives[i], &next, err));
+        const bool first = r->drive == NULL && next.drive != NULL;
+        const bool wider = r->drive != NULL && r->low == r->high && next.low < next.high;
+        *r = first || wider ? next : *r;
+    }
+    for (int c = 0; c < m->n_configurations && own->n_drives == 0 && other == NULL; c++) {
+        other = first_followable(f, &m->configurations[c]);
+    }
+    if (other != NULL) {
+        MT_TRY(range_of_drive(f, other, r, err));
+    }
+    if (r->drive != NULL && r->low == r->high) {
         r->low = fmin(r->low, 0.0);
         r->high = fmax(r->high, 0.0);
     }
-    r->drive = n > 0 ? r->drive : NULL;
     return MT_OK;
 }
 
@@ -532,7 +567,9 @@ static mt_status share(walk *w, bool *shared, mt_err *err)
     *shared = false;
     if (f->followed->sys != NULL && other->n_bodies == bodies &&
         other->drive->n_positions == n) {
-        MT_TRY(mt_system_same_drive(f->followed->sys, w->sys, &same, err));
+        int joint = -1;
+        MT_TRY(mt_system_same_drive(f->followed->sys, w->sys, &same, &joint, err));
+        same = same && joint < 0; /* in all drives, of which one is followed */
     }
     for (int i = 0; i < n && same; i++) {
         same = other->drive->positions[i].at == w->out->positions[i].at;
@@ -585,8 +622,8 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
     } else {
         MT_TRY(mt_linear_new(w->sys, &w->lin, err));
     }
-    MT_TRY(mt_sweep_run(modes ? w->a->lin : w->lin, at, n, positions, &visitor, f->work, &found,
-                        err));
+    const mt_sweep_plan plan = {.n = n, .positions = positions};
+    MT_TRY(mt_sweep_run(modes ? w->a->lin : w->lin, at, &plan, &visitor, f->work, &found, err));
     for (int i = 0; i < n; i++) {
         mt_scene_position *const p = &w->out->positions[i];
         if (found.points[i].status != MT_OK) {

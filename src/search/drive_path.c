@@ -435,7 +435,7 @@ static mt_status follow_drive_path(walk *w, const mt_drive_positions *f, const i
     double *const positions = mt_arena_f64(w->mem, (size_t)f->n, 1);
     MT_TRY(mt_arena_check(w->mem, err));
     for (int k = 0; k < f->n; k++) {
-        positions[k] = mt_drive_positions_position(w->ws->views[f->view[k]].analysis);
+        positions[k] = mt_drive_positions_position(f, w->ws->views[f->view[k]].analysis);
     }
     mt_drive_path *const out = w->out;
     const int n = drive_path_distinct(f->n, positions, w->unit, list);
@@ -469,7 +469,7 @@ mt_status mt_drive_path_follow(mt_workspace *ws, int drive_positions, const int 
                                mt_arena *mem, mt_drive_path *out, mt_err *err)
 {
     const mt_drive_positions *const f = &ws->p->families[drive_positions];
-    const double first = mt_drive_positions_position(ws->views[f->view[0]].analysis);
+    const double first = mt_drive_positions_position(f, ws->views[f->view[0]].analysis);
     mt_err why = {.code = MT_OK};
     *out = (mt_drive_path){.end = MT_MOTION_NONE,
                            .room = HUGE_VAL,
@@ -1007,7 +1007,8 @@ static mt_status list_goal_positions(limit_walk *w, int drive_positions, double 
         const mt_requirement *const d = &p->requirements[i];
         if (mt_drive_positions_same_limit(d, w->d) &&
             mt_drive_positions_of(p, d->view) == drive_positions) {
-            all[given++] = mt_drive_positions_position(w->ws->views[d->view].analysis);
+            all[given++] = mt_drive_positions_position(&p->families[drive_positions],
+                                                       w->ws->views[d->view].analysis);
         }
     }
     w->unit = p->families[drive_positions].angle ? 1.0 : sys->length_m;

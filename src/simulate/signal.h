@@ -57,12 +57,12 @@ mt_status mt_signal_rms(int n, const mt_signal *signals, double duration_s, int 
 typedef enum mt_sim_push {
     MT_SIM_FORCE, /* at a sensor's channel, along its global axis [N, N m] */
     MT_SIM_BASE,  /* acceleration of the ground along an axis [m/s^2] */
-    MT_SIM_MOVE   /* the driven joint's coordinate, from its held position [rad, m] */
+    MT_SIM_MOVE   /* a locked driven joint's coordinate, from its held position [rad, m] */
 } mt_sim_push;
 
 typedef struct mt_sim_input {
     mt_sim_push push;
-    int at;    /* FORCE: channel; BASE: axis 0..2 */
+    int at;    /* FORCE: channel; BASE: axis 0..2; MOVE: of the system's drives */
     int slope; /* BASE: the signal is the acceleration (0), velocity (1) or position (2) */
     const mt_signal *signal;
 } mt_sim_input;

@@ -321,13 +321,13 @@ mt_status mt_start_from(mt_linear *lin, const mt_linear *from, mt_sim_start *sta
         to->n_measures != other->n_measures) {
         return mt_fail(err, MT_E_INTERNAL, "systems of other states");
     }
-    const double drive = start->at.drive;
+    const mt_placement own = start->at;
     mt_placement_copy(to, at, &start->at);
-    start->at.drive = drive;
+    memcpy(start->at.drive, own.drive, sizeof own.drive);
     return MT_OK;
 }
 
-mt_status mt_start_rates(mt_linear *lin, int n, const mt_sim_joint *rates, double drive,
+mt_status mt_start_rates(mt_linear *lin, int n, const mt_sim_joint *rates, const double *drive,
                          mt_arena *mem, mt_sim_start *start, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -341,8 +341,8 @@ mt_status mt_start_rates(mt_linear *lin, int n, const mt_sim_joint *rates, doubl
     for (int k = 0; k < n; k++) {
         b[g.m + k] = rates[k].value;
     }
-    if (sys->drive_constraint >= 0 && sys->drive_constraint < g.m) {
-        b[sys->drive_constraint] = drive;
+    for (int i = 0; i < sys->n_drives - sys->n_trims; i++) {
+        b[sys->drives[i].constraint] = drive == NULL ? 0.0 : drive[i];
     }
     const mt_gauss gauss = {.m = g.n, .mass = g.motion.mass, .force = none, .a = g.a, .b = b};
     MT_TRY(mt_gauss_solve(sys, &gauss, start->v, NULL, NULL, mem, err));

@@ -18,7 +18,7 @@ mt_status mt_start_rest(mt_linear *lin, mt_arena *mem, mt_sim_start *out, mt_err
 /* Move joints to their values in small steps; the rest of the mechanism follows with the least
  * motion. Begins at `start` (in: the rest position; out), or, where that ends in another
  * assembly of closed loops than the reference position, at the reference position (of a driven
- * system, at the position of its drive). Fails: MT_E_ASSEMBLY (not all values are reached in
+ * system, at the positions of its drives). Fails: MT_E_ASSEMBLY (not all values are reached in
  * the reference assembly; the text says how far), MT_E_MEMORY. */
 mt_status mt_start_joints(mt_linear *lin, int n, const mt_sim_joint *joints, mt_arena *mem,
                           mt_sim_start *start, mt_err *err);
@@ -27,12 +27,13 @@ mt_status mt_start_joints(mt_linear *lin, int n, const mt_sim_joint *joints, mt_
 mt_status mt_start_along(mt_linear *lin, const double *dq, mt_arena *mem, mt_sim_start *start,
                          mt_err *err);
 /* Start at the rest position of `from`, another system of the same configuration that differs
- * in its drive only. Fails: MT_E_INTERNAL (it differs otherwise). */
+ * in its drives only. Fails: MT_E_INTERNAL (it differs otherwise). */
 mt_status mt_start_from(mt_linear *lin, const mt_linear *from, mt_sim_start *start,
                         mt_err *err);
-/* Set velocities of least kinetic energy with these rates of joints; drive: the velocity of the
- * driven joint. Fails: MT_E_INPUT (the joints cannot have these rates at once), MT_E_MEMORY. */
-mt_status mt_start_rates(mt_linear *lin, int n, const mt_sim_joint *rates, double drive,
+/* Set velocities of least kinetic energy with these rates of joints; drive: [sys->n_drives] the
+ * velocities of the driven joints, where locks hold them; NULL: at rest. Fails: MT_E_INPUT (the
+ * joints cannot have these rates at once), MT_E_MEMORY. */
+mt_status mt_start_rates(mt_linear *lin, int n, const mt_sim_joint *rates, const double *drive,
                          mt_arena *mem, mt_sim_start *start, mt_err *err);
 
 #endif

@@ -334,23 +334,27 @@ static void add_base(const mt_sim *s, int axis, double acceleration, double *pus
     }
 }
 
-static int drive_of(const mt_sim *s)
+/* Motions of the locked drives: positions relative to their held ones, velocities and
+ * accelerations. */
+typedef struct drive_motions {
+    double by[MT_DRIVES_MOST][3];
+} drive_motions;
+
+static int locked_drives(const mt_sim *s)
 {
-    const int drive = s->sys->drive_constraint;
-    return drive < s->m ? drive : -1;
+    return s->sys->n_drives - s->sys->n_trims;
 }
 
-/* The prescribed motion of the driven joint at t: position relative to its held one, velocity
- * and acceleration. */
-static mt_status moved(const mt_sim *s, double t, double out[3], mt_err *err)
+/* The prescribed motions of driven joints at t. */
+static mt_status moved(const mt_sim *s, double t, drive_motions *out, mt_err *err)
 {
-    memset(out, 0, 3 * sizeof *out);
+    memset(out, 0, sizeof *out);
     for (int i = 0; i < s->opt->n_inputs; i++) {
         if (s->opt->inputs[i].push == MT_SIM_MOVE) {
             double by[3];
             MT_TRY(mt_signal_eval(s->opt->inputs[i].signal, t, by, err));
             for (int k = 0; k < 3; k++) {
-                out[k] += by[k];
+                out->by[s->opt->inputs[i].at][k] += by[k];
             }
         }
     }
@@ -379,37 +383,41 @@ static mt_status pushed(mt_sim *s, double t, const double *v, mt_err *err)
     return MT_OK;
 }
 
-/* s->at: the base moved by u, the drive where it is at t; drive[3]: moved. */
-static mt_status move_placement(mt_sim *s, double t, const double *u, double drive[3],
+/* s->at: the base moved by u, the drives where they are at t; drive: their motions. */
+static mt_status move_placement(mt_sim *s, double t, const double *u, drive_motions *drive,
                                 mt_err *err)
 {
     MT_TRY(moved(s, t, drive, err));
     mt_placement_copy(s->sys, &s->base, &s->at);
     mt_poses_move(s->sys, s->at.pose, u);
-    s->at.drive = s->still + drive[0];
+    for (int i = 0; i < locked_drives(s); i++) {
+        s->at.drive[i] = s->still[i] + drive->by[i][0];
+    }
     return MT_OK;
 }
 
 /* Accelerations at s->at into out[nq]; power of what is not in the energy. */
-static mt_status accelerate(mt_sim *s, double t, const double *v, const double drive[3],
+static mt_status accelerate(mt_sim *s, double t, const double *v, const drive_motions *drive,
                             double *out, double *power, mt_err *err)
 {
     mt_motion *const o = &s->motion;
-    const int d = drive_of(s);
+    const int locked = locked_drives(s);
     s->evaluations++;
     mt_motion_eval(o, &s->at, v);
     MT_TRY(pushed(s, t, v, err));
     memcpy(s->force, o->force, (size_t)s->nq * sizeof *s->force);
     mt_axpy(s->nq, 1.0, s->push, s->force);
     memcpy(s->b, o->b, (size_t)s->m * sizeof *s->b);
-    if (d >= 0) {
-        s->b[d] += drive[2];
+    for (int i = 0; i < locked; i++) {
+        s->b[s->sys->drives[i].constraint] += drive->by[i][2];
     }
     const mt_gauss g = {.m = s->m, .mass = o->mass, .force = s->force, .a = o->a, .b = s->b};
-    MT_TRY(mt_gauss_solve_near(&s->gauss, s->sys, &g, out, d >= 0 ? s->lambda : NULL, s->mem,
-                               err));
+    MT_TRY(mt_gauss_solve_near(&s->gauss, s->sys, &g, out, locked > 0 ? s->lambda : NULL,
+                               s->mem, err));
     *power = mt_dot(s->nq, s->push, v) - mt_dot(s->nq, o->damping, v);
-    *power += d >= 0 ? s->lambda[d] * drive[1] : 0.0;
+    for (int i = 0; i < locked; i++) {
+        *power += s->lambda[s->sys->drives[i].constraint] * drive->by[i][1];
+    }
     return MT_OK;
 }
 
@@ -418,10 +426,10 @@ mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err
     mt_sim *const s = sim;
     const ptrdiff_t nq = s->nq;
     const double *const v = y + nq;
-    double drive[3];
+    drive_motions drive;
     increments(s->sys, y, v, out);
-    MT_TRY(move_placement(s, t, y, drive, err));
-    MT_TRY(accelerate(s, t, v, drive, out + nq, out + (2 * nq), err));
+    MT_TRY(move_placement(s, t, y, &drive, err));
+    MT_TRY(accelerate(s, t, v, &drive, out + nq, out + (2 * nq), err));
     memcpy(s->rows, s->push, (size_t)nq * sizeof *s->rows);
     memset(out + (2 * nq) + 1, 0, (size_t)s->opt->n_gauges * sizeof *out);
     for (int i = 0; i < s->n_integrals; i++) {
@@ -524,11 +532,10 @@ static mt_status least_change(mt_sim *s, const mt_elimination *e, const double *
 
 /* Project s->at, with velocities v, onto the joints; *out: their elimination there, in s->mem.
  */
-static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_elimination *out,
-                              mt_err *err)
+static mt_status close_joints(mt_sim *s, double *v, const drive_motions *drive,
+                              mt_elimination *out, mt_err *err)
 {
     mt_motion *const o = &s->motion;
-    const int d = drive_of(s);
     if (s->m == 0) {
         return mt_eliminate_factor(s->sys, 0, o->a, s->mem, out, err);
     }
@@ -550,8 +557,8 @@ static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_el
         }
         s->left_m = fmax(s->left_m, gap);
         MT_TRY(look_out(s, &e, err));
-        if (d >= 0) {
-            o->rate[d] -= drive[1];
+        for (int k = 0; k < locked_drives(s); k++) {
+            o->rate[s->sys->drives[k].constraint] -= drive->by[k][1];
         }
         MT_TRY(least_change(s, &e, o->rate, err));
         mt_axpy(s->nq, -1.0, s->along, v);
@@ -600,11 +607,11 @@ static mt_status begin_step(mt_sim *s, double t, mt_err *err)
 mt_status mt_sim_accept(mt_sim *s, double t, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
-    double drive[3];
+    drive_motions drive;
     memcpy(s->begin, s->y, (size_t)s->n * sizeof *s->begin);
-    MT_TRY(move_placement(s, t, s->y, drive, err));
+    MT_TRY(move_placement(s, t, s->y, &drive, err));
     mt_elimination closed;
-    MT_TRY(close_joints(s, s->begin + s->nq, drive, &closed, err));
+    MT_TRY(close_joints(s, s->begin + s->nq, &drive, &closed, err));
     straighten(s->sys, s->at.pose);
     mt_motion_turns(&s->motion, &s->at);
     mt_placement_copy(s->sys, &s->at, &s->base);
@@ -711,7 +718,9 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
             }
         }
     }
-    s->still = mt_linear_position(lin)->at.drive;
+    for (int i = 0; i < locked_drives(s); i++) {
+        s->still[i] = mt_linear_position(lin)->at.drive[i];
+    }
     mt_placement_copy(sys, &start->at, &s->start);
     mt_placement_copy(sys, &start->at, &s->base);
     memcpy(s->y + s->nq, start->v, (size_t)s->nq * sizeof *s->y);

@@ -84,7 +84,7 @@ typedef struct mt_sim {
     int *integral;   /* [n_integrals] */
     double *rows;    /* nq x (1 + n_integrals): forces of the inputs, rows of these gauges */
     mt_gauge_motion gauge;
-    double still;     /* drive of the rest position */
+    double still[MT_DRIVES_MOST]; /* drives of the rest position */
     int rank;         /* rank of the joints' equations at the start; -1: not known yet */
     mt_arena names;   /* names of joints, for messages */
     double free_way;  /* largest displacement in a step [rad, model lengths] */

@@ -132,12 +132,19 @@ def whole(model):
     turning = [j["name"] for j in model.get("joints") or [] if j["type"] == "revolute" and "in" not in j]
     for name, own in (model.get("configurations") or {}).items():
         drive = own.get("drive", {})
+        if isinstance(drive, list):  # the first one of several
+            drive = drive[0] if drive else {}
+            if "position_rad" in drive:
+                yield "degrees", ("configurations", name, "drive", 0, "position_rad"), 20, "warning", r"more than a turn"
+            continue
         if "position_rad" in drive:
             yield "degrees", ("configurations", name, "drive", "position_rad"), 20, "warning", r"more than a turn"
         if "position_rad" in drive and len(turning) > 1:
             other = [t for t in turning if t != drive["joint"]][0]
             like = {"like": name, "drive": {"joint": other, "position_rad": 0.01}}
-            yield "dropped", ("configurations", "zz"), like, "error", "drops the inherited drive of " + re.escape(drive["joint"])
+            like = {"like": name, "drive": [like["drive"], {"joint": other, "position_rad": 0.02}]}
+            yield "twice", ("configurations", "zz"), like, "error", f"joint \"{re.escape(other)}\" is driven twice"
+            yield "free", ("configurations", "zz"), {"drive": {"joint": other, "free": True}}, "error", r"is free already"
     number = next((n for n, p in (model.get("parameters") or {}).items() if isinstance(p, dict) and isinstance(p.get("value"), (int, float))), None)
     if number is not None:
         yield "rad", ("parameters", "zz"), f"cos(30 + 0*{number})", "warning", r"without a unit"

@@ -135,16 +135,18 @@ static void use_sweep(const mt_model *m, int c, mt_arena *mem)
         &(mt_system_def){.model = m, .configuration = c, .drive = &drive, .at = &positions[1]},
         &sys, &err);
     rc = rc == MT_OK ? mt_linear_new(sys, &lin, &err) : rc;
-    rc = rc == MT_OK ? mt_sweep_run(lin, &positions[1], MT_COUNT(positions), positions, NULL,
-                                    mem, &sweep, &err)
-                     : rc;
+    rc = rc == MT_OK
+             ? mt_sweep_run(lin, &positions[1],
+                            &(mt_sweep_plan){.n = MT_COUNT(positions), .positions = positions},
+                            NULL, mem, &sweep, &err)
+             : rc;
     if (rc != MT_OK) {
         requirement_failed(rc, &err);
     }
     for (int i = 0; rc == MT_OK && i < sweep.n_points; i++) {
         const mt_sweep_point *const p = &sweep.points[i];
         DEMAND(p->status == MT_OK || (p->why != NULL && p->why[0] != '\0'));
-        DEMAND(p->status != MT_OK || (isfinite(p->hold) && isfinite(p->gap_m)));
+        DEMAND(p->status != MT_OK || (isfinite(p->hold[0]) && isfinite(p->gap_m)));
     }
     mt_linear_delete(lin);
     mt_system_delete(sys);

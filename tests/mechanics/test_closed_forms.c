@@ -163,7 +163,7 @@ static void closed_form__driven_rod_is_locked_or_trimmed(mt_test *t)
         driven_rod_pair(40.0, angle, hz);
         mech_expect(t, &s, 2, hz, 0, TOL);
         /* the servo carries the weight's moment */
-        CHECK_NEAR(t, fabs(mt_linear_position(s.a->lin)->equilibrium.trim_force),
+        CHECK_NEAR(t, fabs(mt_linear_position(s.a->lin)->equilibrium.trim_force.of[0]),
                    (1.0 + 0.5) * 0.8 * 9.81 * sin(angle), TOL);
     }
     mech_free(&s);
@@ -172,6 +172,105 @@ static void closed_form__driven_rod_is_locked_or_trimmed(mt_test *t)
         mech_expect(t, &s, 2, hz, 0, TOL);
     }
     mech_free(&s);
+}
+
+/* The arm of driven_arm.json in its posture, in absolute angles of its three links. */
+typedef struct arm {
+    double m[3][3];
+    double k[3][3];
+    double moment[3]; /* dV/dphi of the weights */
+} arm;
+
+static arm arm_at(double s, double e)
+{
+    const double big = 0.5;
+    const double little = 0.4;
+    const double r = 0.1;
+    const double upper = 2.0;
+    const double fore = 1.2;
+    const double hand = 0.5;
+    const double spring[3] = {900.0, 400.0, 60.0};
+    double wrist = 0.0; /* k w + g h r cos(s + e + w) = 0 */
+    for (int i = 0; i < 60; i++) {
+        wrist = -9.81 * hand * r * cos(s + e + wrist) / spring[2];
+    }
+    const double phi[3] = {s, s + e, s + e + wrist};
+    const double arms[3] = {big * (0.5 * upper + fore + hand), little * (0.5 * fore + hand),
+                            r * hand};
+    arm a = {.m = {{upper * big * big / 3.0 + (fore + hand) * big * big,
+                    arms[1] * big * cos(phi[0] - phi[1]), arms[2] * big * cos(phi[0] - phi[2])},
+                   {0.0, fore * little * little / 3.0 + hand * little * little,
+                    arms[2] * little * cos(phi[1] - phi[2])},
+                   {0.0, 0.0, hand * r * r + 0.002}}};
+    for (int i = 0; i < 3; i++) {
+        a.moment[i] = 9.81 * arms[i] * cos(phi[i]);
+        a.k[i][i] = spring[i] + (i < 2 ? spring[i + 1] : 0.0) - 9.81 * arms[i] * sin(phi[i]);
+        for (int j = 0; j < i; j++) {
+            a.m[i][j] = a.m[j][i];
+            a.k[i][j] = j == i - 1 ? -spring[i] : 0.0;
+            a.k[j][i] = a.k[i][j];
+        }
+    }
+    return a;
+}
+
+/* det(K - lambda M) of the links from `first` on; the others are locked. */
+static double arm_det(const arm *a, int first, double lambda)
+{
+    double b[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    for (int i = first; i < 3; i++) {
+        for (int j = first; j < 3; j++) {
+            b[i][j] = a->k[i][j] - lambda * a->m[i][j];
+        }
+    }
+    return b[0][0] * (b[1][1] * b[2][2] - b[1][2] * b[2][1]) -
+           b[0][1] * (b[1][0] * b[2][2] - b[1][2] * b[2][0]) +
+           b[0][2] * (b[1][0] * b[2][1] - b[1][1] * b[2][0]);
+}
+
+/* Each frequency is between two places of opposite sign of the determinant. */
+static void check_arm(mt_test *t, const mech *s, int first)
+{
+    const arm a = arm_at(0.4, 0.9);
+    CHECK_INT(t, mt_modal_vibrations(&s->a->modes), 3 - first);
+    for (int i = 1; i <= 3 - first; i++) {
+        const double lambda = pow(2.0 * MECH_PI * mech_hz(s, i), 2.0);
+        const double below = arm_det(&a, first, lambda * (1.0 - TOL));
+        const double above = arm_det(&a, first, lambda * (1.0 + TOL));
+        CHECK(t, below * above < 0.0);
+    }
+}
+
+static void closed_form__driven_arm_in_a_posture_of_two_joints(mt_test *t)
+{
+    static const struct {
+        const char *posture;
+        int locked; /* links, from the shoulder */
+        int trims;
+    } rows[] = {{"locked", 2, 0}, {"mixed", 1, 1}, {"trimmed", 0, 2}};
+    const double drawn[] = {0.0, 0.3};
+    for (int r = 0; r < 2 * MT_COUNT(rows); r++) {
+        const arm a = arm_at(0.4, 0.9);
+        const double hold[] = {a.moment[0] + a.moment[1] + a.moment[2],
+                               a.moment[1] + a.moment[2]};
+        const int trims = rows[r / 2].trims;
+        mech s;
+        mt_test_row(t, "%s, drawn at %g", rows[r / 2].posture, drawn[r % 2]);
+        if (mech_must(t, mech_load(t, "driven_arm"), rows[r / 2].posture, "a b", &s)) {
+            mt_analysis_options opt = mt_analysis_options_default();
+            s.at[0] = drawn[r % 2];
+            s.at[1] = -2.0 * drawn[r % 2];
+            if (CHECK(t, mt_analysis_solve(s.a, s.at, &opt, &s.err) == MT_OK)) {
+                check_arm(t, &s, rows[r / 2].locked);
+            }
+            const mt_state *const at = mt_linear_position(s.a->lin);
+            CHECK_INT(t, s.a->sys->n_trims, trims);
+            for (int i = 0; i < trims; i++) {
+                CHECK_NEAR(t, -at->equilibrium.trim_force.of[i], hold[2 - trims + i], TOL);
+            }
+        }
+        mech_free(&s);
+    }
 }
 
 static void closed_form__massless_coordinate_is_condensed(mt_test *t)
@@ -234,6 +333,7 @@ MT_TEST_MAIN(MT_TEST(closed_form__physical_pendulum_swings),
              MT_TEST(closed_form__ring_of_six_has_double_modes),
              MT_TEST(closed_form__taut_string_is_stiff_across),
              MT_TEST(closed_form__driven_rod_is_locked_or_trimmed),
+             MT_TEST(closed_form__driven_arm_in_a_posture_of_two_joints),
              MT_TEST(closed_form__massless_coordinate_is_condensed),
              MT_TEST(refused__massless_body_that_nothing_holds),
              MT_TEST(refused__free_fall_has_no_equilibrium),

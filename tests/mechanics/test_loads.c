@@ -264,8 +264,9 @@ static void load__is_carried_by_what_holds_a_driven_joint(mt_test *t)
     mech s;
     if (mech_must(t, mech_parse(t, model), "held", "", &s)) {
         const mt_linear *const lin = s.a->lin;
-        const double hold = -mt_linear_position(lin)
-                                 ->equilibrium.lambda[mt_linear_system(lin)->drive_constraint];
+        const double hold =
+            -mt_linear_position(lin)
+                 ->equilibrium.lambda[mt_linear_system(lin)->drives[0].constraint];
         CHECK_NEAR(t, hold, (2.0 * 9.81 * 0.5 * sin(0.4)) - 3.0, TOL);
         mech_expect(t, &s, 1, (const double[1]){hz_of(9.81 / 0.3)}, 0, TOL);
     }

@@ -55,7 +55,7 @@ static double value_of(const void *context, int n, const double *inputs)
         return nan("");
     }
     const mt_state *const at = state_of(j->s);
-    double sum = 1.0 + (j->pull_trim * at->equilibrium.trim_force);
+    double sum = 1.0 + (j->pull_trim * at->equilibrium.trim_force.of[0]);
     mt_poses_increment(sys, j->base, at->at.pose, way);
     for (int i = 0; i < sys->nq; i++) {
         sum += j->pull[i] * way[i];
@@ -83,7 +83,7 @@ static bool solve(mt_test *t, const functional *j, adjoint *out)
     out->stage = &state_of(j->s)->equilibrium;
     return CHECK(t, mt_arena_init(&out->mem, 0, &err) == MT_OK) &&
            CHECK(t, out->stage->active) &&
-           CHECK(t, mt_newton_adjoint(out->stage, j->pull, j->across, j->pull_trim, out->x,
+           CHECK(t, mt_newton_adjoint(out->stage, j->pull, j->across, &j->pull_trim, out->x,
                                       out->y, &out->mem, &err) == MT_OK);
 }
 
@@ -111,7 +111,7 @@ static void draw(functional *j, mech *s, uint64_t seed, bool forces)
     for (int i = 0; i < at->equilibrium.m && forces; i++) {
         j->across[i] = mt_random_in(&random, -0.1, 0.1);
     }
-    j->pull_trim = at->equilibrium.m > 0 && s->a->sys->trim ? 0.75 : 0.0;
+    j->pull_trim = at->equilibrium.m > 0 && s->a->sys->n_trims > 0 ? 0.75 : 0.0;
 }
 
 static void adjoint__bead_on_a_wire_has_its_closed_form(mt_test *t)
@@ -209,7 +209,7 @@ static void adjoint__slopes_of_a_linkage_are_those_of_its_equilibria(mt_test *t)
                 check_slope(t, &j, 0, a.x[state(sys, "bob", 0)]);
                 check_slope(t, &j, 1, a.x[state(sys, "rod", 5)]);
                 if (sys->driven) { /* from a reference position that L moves */
-                    check_slope(t, &j, 3, a.y[sys->drive_constraint]);
+                    check_slope(t, &j, 3, a.y[sys->drives[0].constraint]);
                 } else {
                     check_slope(t, &j, 2, a.y[rope]);
                 }
@@ -252,7 +252,7 @@ static void adjoint__slopes_of_a_long_chain_are_found_sparse(mt_test *t)
                 check_slope(t, &j, 0, a.x[state(sys, "c.40", 0)]);
                 check_slope(t, &j, 1, a.x[state(sys, "c.20", 5)]);
                 if (sys->driven) {
-                    check_slope(t, &j, 2, a.y[sys->drive_constraint]);
+                    check_slope(t, &j, 2, a.y[sys->drives[0].constraint]);
                 }
             }
             mt_arena_free(&a.mem);

@@ -91,7 +91,7 @@ static void close__comes_next_to_the_point_that_newton_finds(mt_test *t)
             way[j] = far * mt_random_in(&r, -0.2, 0.2);
         }
         mt_poses_move(sys, c.at.pose, way);
-        c.at.drive = far * mt_random_in(&r, -0.5, 0.5);
+        c.at.drive[0] = far * mt_random_in(&r, -0.5, 0.5);
         REQUIRE(t, mt_placement_init(&one, sys, &c.mem, &err) == MT_OK);
         REQUIRE(t, mt_placement_init(&two, sys, &c.mem, &err) == MT_OK);
         mt_placement_copy(sys, &c.at, &one);

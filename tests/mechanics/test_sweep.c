@@ -53,7 +53,8 @@ static bool run_sweep(mt_test *t, mt_model *model, const char *configuration,
         r->rc = mt_linear_new(r->sys, &r->lin, &r->err);
     }
     if (r->rc == MT_OK) {
-        r->rc = mt_sweep_run(r->lin, NULL, n, positions, NULL, &r->mem, &r->sweep, &r->err);
+        r->rc = mt_sweep_run(r->lin, NULL, &(mt_sweep_plan){.n = n, .positions = positions},
+                             NULL, &r->mem, &r->sweep, &r->err);
     }
     return r->rc == MT_OK;
 }
@@ -61,7 +62,7 @@ static bool run_sweep(mt_test *t, mt_model *model, const char *configuration,
 static const mt_sweep_point *reached(mt_test *t, const run *r, int i)
 {
     const mt_sweep_point *const p = &r->sweep.points[i];
-    mt_test_row(t, "point %d, at %.6g", i, p->drive);
+    mt_test_row(t, "point %d, at %.6g", i, p->drive[0]);
     if (!CHECK(t, p->status == MT_OK)) {
         (void)fprintf(stderr, "%s\n", p->why);
         return NULL;
@@ -121,7 +122,7 @@ static void sweep__four_bar_obeys_freudenstein(mt_test *t)
             if (p == NULL) {
                 continue;
             }
-            const double t2 = 1.0 + p->drive;
+            const double t2 = 1.0 + p->drive[0];
             double t3 = 0.0;
             double t4 = 0.0;
             four_bar_angles(&f, t2, &t3, &t4);
@@ -130,7 +131,7 @@ static void sweep__four_bar_obeys_freudenstein(mt_test *t)
             const double w3 = f.a * sin(t4 - t2) / (f.b * sin(t3 - t4));
             const double w4 = f.a * sin(t2 - t3) / (f.c * sin(t4 - t3));
             const double worst = fmax(1.0, fmax(fabs(w3), fabs(w4)));
-            CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "jA")], p->drive, TOL);
+            CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "jA")], p->drive[0], TOL);
             CHECK_NEAR_ABS(t, within_turn(p->coordinate[joint(&r, "jD")] - t4 + t40), 0.0, TOL);
             CHECK_NEAR_ABS(t, within_turn(coupler - t3 + t30), 0.0, TOL);
             CHECK_NEAR_ABS(t, p->ratio[joint(&r, "jD")], w4, 10.0 * TOL * worst * worst);
@@ -206,7 +207,7 @@ static void sweep__slider_crank_stops_at_its_limit_positions(mt_test *t)
         CHECK_INT(t, r.sweep.n_reached, 20); /* from -0.13 m to 0.06 m, by 10 mm */
         for (int i = 0; i < 61; i++) {
             const mt_sweep_point *const p = &r.sweep.points[i];
-            const double x = x0 + p->drive;
+            const double x = x0 + p->drive[0];
             mt_test_row(t, "slider at %g", x);
             if (x > 0.2 && x < 0.4) {
                 const double cosine = (x * x + 0.01 - 0.09) / (2.0 * 0.1 * x);
@@ -214,7 +215,7 @@ static void sweep__slider_crank_stops_at_its_limit_positions(mt_test *t)
                 CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "shaft")],
                                acos(cosine) - MECH_PI / 3.0, 100.0 * TOL);
             } else {
-                expect_limit(t, p, (p->drive > 0.0 ? 0.4 : 0.2) - x0);
+                expect_limit(t, p, (p->drive[0] > 0.0 ? 0.4 : 0.2) - x0);
             }
         }
     }
@@ -231,15 +232,15 @@ static void sweep__the_crank_of_a_slider_crank_goes_round(mt_test *t)
         for (int i = 0; i < POINTS; i++) {
             const mt_sweep_point *const p = reached(t, &r, i);
             if (p != NULL) {
-                const double a = MECH_PI / 3.0 + p->drive;
+                const double a = MECH_PI / 3.0 + p->drive[0];
                 const double root = sqrt(0.09 - 0.01 * sin(a) * sin(a));
-                CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "shaft")], p->drive, 10.0 * TOL);
+                CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "shaft")], p->drive[0], 10.0 * TOL);
                 CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "bore")], 0.1 * cos(a) + root - x0,
                                TOL);
                 CHECK_NEAR_ABS(t, p->ratio[joint(&r, "bore")],
                                -0.1 * sin(a) * (1.0 + 0.1 * cos(a) / root), TOL);
                 /* the rod's own angle stays small: its joint turns back against the crank */
-                CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "big_end")] + p->drive, 0.0, 0.7);
+                CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "big_end")] + p->drive[0], 0.0, 0.7);
             }
         }
     }
@@ -277,8 +278,8 @@ static void sweep__limit_is_located(mt_test *t)
     if (CHECK(t, run_sweep(t, mech_parse(t, SLIDER_CRANK), NULL, &drive,
                            (const double[]){0.2, 0.2}, 1, &r))) {
         CHECK_INT(t, r.sweep.n_reached, 0);
-        CHECK_NEAR_ABS(t, mt_linear_position(r.lin)->driven.drive, 0.4 - x0, LIMIT_TOL);
-        CHECK(t, mt_linear_position(r.lin)->driven.drive <= 0.4 - x0);
+        CHECK_NEAR_ABS(t, mt_linear_position(r.lin)->driven.drive[0], 0.4 - x0, LIMIT_TOL);
+        CHECK(t, mt_linear_position(r.lin)->driven.drive[0] <= 0.4 - x0);
     }
     run_free(&r);
 }
@@ -382,7 +383,7 @@ static void sweep__servo_moves_the_stick_in_space(mt_test *t)
             for (int i = 0; i < 61; i++) {
                 const mt_sweep_point *const p = reached(t, &r, i);
                 double ratio = 0.0;
-                near = stick_angle(p == NULL ? 0.0 : p->drive, near, &ratio);
+                near = stick_angle(p == NULL ? 0.0 : p->drive[0], near, &ratio);
                 if (p != NULL) {
                     CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "pivot")], near, 10.0 * TOL);
                     CHECK_NEAR_ABS(t, p->ratio[joint(&r, "pivot")], ratio, 100.0 * TOL);
@@ -406,9 +407,9 @@ static void sweep__a_locked_rod_is_held_by_its_moment(mt_test *t)
             for (int i = 0; i < 53; i++) {
                 const mt_sweep_point *const p = reached(t, &r, i);
                 if (p != NULL) {
-                    const double weight = (1.0 + 0.5) * 9.81 * 0.8 * sin(p->drive);
-                    const double want = k == 0 ? 40.0 * p->drive + weight : -weight;
-                    CHECK_NEAR_ABS(t, p->hold, want, 1e-9);
+                    const double weight = (1.0 + 0.5) * 9.81 * 0.8 * sin(p->drive[0]);
+                    const double want = k == 0 ? 40.0 * p->drive[0] + weight : -weight;
+                    CHECK_NEAR_ABS(t, p->hold[0], want, 1e-9);
                     CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "axle")], 0.0, 1e-11);
                 }
             }
@@ -524,7 +525,8 @@ static void sweep__failing_allocations_are_errors(mt_test *t)
             r.rc = mt_linear_new(r.sys, &r.lin, &r.err);
         }
         if (r.rc == MT_OK) {
-            r.rc = mt_sweep_run(r.lin, NULL, 3, positions, NULL, &r.mem, &r.sweep, &r.err);
+            r.rc = mt_sweep_run(r.lin, NULL, &(mt_sweep_plan){.n = 3, .positions = positions},
+                                NULL, &r.mem, &r.sweep, &r.err);
         }
         mt_alloc_fail_after(-1);
         const mt_status rc = r.rc;

@@ -55,12 +55,10 @@ static void finish__finds_problems_without_a_file(mt_test *t)
     mt_model *m = NULL;
     REQUIRE(t, mt_model_new(&m, NULL) == MT_OK);
     mt_parameter parameters[] = {{.name = {"a", MT_NO_ADDR}}, {.name = {"b", MT_NO_ADDR}}};
-    mt_configuration configuration = {.name = {"up", MT_NO_ADDR},
-                                      .like = MT_ABSENT,
-                                      .drive = {.given = true,
-                                                .joint_name = {"pin", MT_NO_ADDR},
-                                                .addr = MT_NO_ADDR,
-                                                .position = MT_ABSENT}};
+    mt_drive drive = {
+        .joint_name = {"pin", MT_NO_ADDR}, .addr = MT_NO_ADDR, .position = MT_ABSENT};
+    mt_configuration configuration = {
+        .name = {"up", MT_NO_ADDR}, .like = MT_ABSENT, .drives = &drive, .n_drives = 1};
     mt_diags diags = mt_diags_default(&m->mem);
     m->dimension = 2;
     m->parameters = parameters;

@@ -332,7 +332,7 @@ static mt_scene *scene_of_range(mt_test *t, const mt_model *model, mt_scene_trav
         return NULL;
     }
     for (int c = 0; c < model->n_configurations; c++) {
-        configuration = model->configurations[c].drive.given ? c : configuration;
+        configuration = model->configurations[c].n_drives > 0 ? c : configuration;
     }
     for (int j = 0; j < model->n_joints; j++) {
         travel[j] = kind;
@@ -406,7 +406,7 @@ static void scene__designs_together_are_those_alone(mt_test *t)
         return;
     }
     for (int i = 0; i < model->n_configurations && n < MOST; i++) { /* the first, and driven */
-        if (i == 0 || model->configurations[i].drive.given) {
+        if (i == 0 || model->configurations[i].n_drives > 0) {
             configurations[n++] = i;
         }
     }

@@ -122,7 +122,7 @@ static inline bool motion_put(mt_test *t, motion *m, const char *joint, double v
 static inline bool motion_turn(mt_test *t, motion *m, const char *joint, double rate)
 {
     const mt_sim_joint j = motion_joint(m, joint, rate);
-    return motion_done(t, m, mt_start_rates(m->lin, 1, &j, 0.0, &m->mem, &m->start, &m->err));
+    return motion_done(t, m, mt_start_rates(m->lin, 1, &j, NULL, &m->mem, &m->start, &m->err));
 }
 
 static inline bool motion_run(mt_test *t, motion *m, double duration_s, double sample_s)

@@ -63,7 +63,7 @@ static bool drive(mt_test *t, motion *m, mt_model *model, const char *configurat
     m->opt.inputs = &input;
     const double rate = angle_at(0.0).speed;
     return motion_done(t, m,
-                       mt_start_rates(m->lin, 0, NULL, rate, &m->mem, &m->start, &m->err)) &&
+                       mt_start_rates(m->lin, 0, NULL, &rate, &m->mem, &m->start, &m->err)) &&
            motion_run(t, m, 2.0 * TURN / 3.0, 2.0 * TURN / 3.0 / samples);
 }
 
