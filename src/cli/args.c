@@ -67,13 +67,18 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_ABOUT, '\0', "about", "X,Y,Z", BIT(MT_CMD_MODES),
            "with --effective-mass: the point that rotations of the ground are about, in m "
            "(default: 0,0,0, the origin)"),
-    OPTION(MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
-           "the joint (or a link's hinge) that is driven, through N positions counted from the "
-           "reference position, in rad or m or the model's units; FROM and TO may be "
-           "expressions (\"pivot=-10*deg:10*deg:21\")"),
-    OPTION(MT_OPT_HOLD, '\0', "hold", "SPRING", BIT(MT_CMD_SWEEP),
-           "re-adjust this spring so that it holds the joint at each position (default: the "
-           "joint is locked)"),
+    REPEATED(
+        MT_OPT_DRIVE, "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
+        "the joint (or a link's hinge) that is driven, through N positions counted from "
+        "the reference position, in rad or m or the model's units; FROM and TO may be "
+        "expressions (\"pivot=-10*deg:10*deg:21\"); several joints go their ways together, "
+        "in as many steps"),
+    REPEATED(MT_OPT_HOLD, "hold", "SPRING", BIT(MT_CMD_SWEEP),
+             "re-adjust this spring so that it holds the joint at each position (default: the "
+             "joint is locked); of one of several joints: JOINT=SPRING"),
+    OPTION(MT_OPT_GRID, '\0', "grid", NULL, BIT(MT_CMD_SWEEP),
+           "with several --drive: every position of one joint with every position of the "
+           "others, each line along the last one from the reference position"),
     OPTION(MT_OPT_FREQUENCIES, '\0', "frequencies", NULL, BIT(MT_CMD_SWEEP),
            "natural frequencies at each position"),
     OPTION(MT_OPT_SVG, '\0', "svg", NULL, BIT(MT_CMD_SHOW),

@@ -25,6 +25,7 @@ typedef enum mt_option_id {
     MT_OPT_ABOUT,
     MT_OPT_DRIVE,
     MT_OPT_HOLD,
+    MT_OPT_GRID,
     MT_OPT_FREQUENCIES,
     MT_OPT_SVG,
     MT_OPT_MODE,

@@ -40,26 +40,56 @@ static double shown_drive_position(const mt_sweep_view *v, bool angle, double x)
     return mt_unit_from_si(shown_drive_unit(v, angle), tidy(x));
 }
 
+static bool several(const mt_sweep_view *v)
+{
+    return v->question->n_drives > 1;
+}
+
 /* A joint's motion per that of the driven one, in these units. */
 static double shown_ratio(const mt_sweep_view *v, bool angle, double ratio)
 {
-    return shown_drive_position(
-        v, angle, mt_unit_to_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), tidy(ratio)));
+    const mt_unit *const unit = shown_drive_unit(v, mt_sweep_driven(v, 0)->angle);
+    return shown_drive_position(v, angle, mt_unit_to_si(unit, tidy(ratio)));
 }
 
-/* Joints with a coordinate, other than the driven one. */
+/* Joints with a coordinate, other than driven ones. */
 static bool told(const mt_sweep_view *v, int joint)
 {
-    return v->sys->joints[joint].coordinate >= 0 &&
-           &v->sys->joints[joint] != mt_sweep_driven(v);
+    bool is = v->sys->joints[joint].coordinate >= 0;
+    for (int i = 0; i < v->question->n_drives; i++) {
+        is = is && &v->sys->joints[joint] != mt_sweep_driven(v, i);
+    }
+    return is;
 }
 
+static void text_ratio_column(const mt_sweep_view *v, const mt_system_joint *joint, mt_table *t)
+{
+    char s[HEADING];
+    const mt_system_joint *const d = mt_sweep_driven(v, 0);
+    if (joint->angle == d->angle) {
+        (void)mt_snprintf(s, sizeof s, "per %s", d->name);
+    } else {
+        (void)mt_snprintf(s, sizeof s, "per %s [%s/%s]", d->name, shown_name(v, joint->angle),
+                          shown_name(v, d->angle));
+    }
+    mt_table_column(t, s, "ratio", MT_ALIGN_POINT);
+}
+
+static const char *holder(const mt_sweep_view *v, int drive)
+{
+    const char *const spring = v->question->drives[drive].spring;
+    return spring != NULL ? spring : "lock";
+}
+
+/* With several driven joints no ratios: they are in JSON and CSV, one for each of them. */
 static void text_columns(const mt_sweep_view *v, mt_table *t)
 {
     char s[HEADING];
-    const mt_system_joint *const d = mt_sweep_driven(v);
-    (void)mt_snprintf(s, sizeof s, "%s [%s]", d->name, shown_name(v, d->angle));
-    mt_table_column(t, s, "position", MT_ALIGN_POINT);
+    for (int i = 0; i < v->question->n_drives; i++) {
+        const mt_system_joint *const d = mt_sweep_driven(v, i);
+        (void)mt_snprintf(s, sizeof s, "%s [%s]", d->name, shown_name(v, d->angle));
+        mt_table_column(t, s, "position", MT_ALIGN_POINT);
+    }
     for (int i = 0; i < v->sys->n_joints; i++) {
         const mt_system_joint *const joint = &v->sys->joints[i];
         if (!told(v, i)) {
@@ -67,38 +97,46 @@ static void text_columns(const mt_sweep_view *v, mt_table *t)
         }
         (void)mt_snprintf(s, sizeof s, "%s [%s]", joint->name, shown_name(v, joint->angle));
         mt_table_column(t, s, joint->name, MT_ALIGN_POINT);
-        if (joint->angle == d->angle) {
-            (void)mt_snprintf(s, sizeof s, "per %s", d->name);
-        } else {
-            (void)mt_snprintf(s, sizeof s, "per %s [%s/%s]", d->name,
-                              shown_name(v, joint->angle), shown_name(v, d->angle));
+        if (!several(v)) {
+            text_ratio_column(v, joint, t);
         }
-        mt_table_column(t, s, "ratio", MT_ALIGN_POINT);
     }
-    (void)mt_snprintf(s, sizeof s, "%s [%s]",
-                      v->question->drive.spring != NULL ? v->question->drive.spring : "lock",
-                      mt_sweep_holds_moment(v) ? "N m" : "N");
-    mt_table_column(t, s, "hold", MT_ALIGN_POINT);
+    for (int i = 0; i < v->question->n_drives; i++) {
+        (void)mt_snprintf(s, sizeof s, "%s%s%s [%s]", holder(v, i), several(v) ? " of " : "",
+                          several(v) ? mt_sweep_driven(v, i)->name : "",
+                          mt_sweep_holds_moment(v, i) ? "N m" : "N");
+        mt_table_column(t, s, "hold", MT_ALIGN_POINT);
+    }
     for (int i = 0; i < v->modes; i++) {
         (void)mt_snprintf(s, sizeof s, "mode %d [Hz]", i + 1);
         mt_table_column(t, s, "mode", MT_ALIGN_POINT);
     }
 }
 
+static double shown_position(const mt_sweep_view *v, const mt_sweep_point *p, int drive)
+{
+    const bool angle = mt_sweep_driven(v, drive)->angle;
+    return mt_unit_from_si(shown_drive_unit(v, angle), p->drive[drive]);
+}
+
 static void text_row(const mt_sweep_view *v, int point, mt_table *t)
 {
     const mt_sweep_point *const p = &v->sweep.points[point];
-    mt_table_number(
-        t, mt_unit_from_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), p->drive[0]),
-        DIGITS);
+    for (int i = 0; i < v->question->n_drives; i++) {
+        mt_table_number(t, shown_position(v, p, i), DIGITS);
+    }
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const bool angle = v->sys->joints[i].angle;
             mt_table_number(t, shown_drive_position(v, angle, p->coordinate[i]), DIGITS);
-            mt_table_number(t, shown_ratio(v, angle, p->ratio[i]), DIGITS);
+            if (!several(v)) {
+                mt_table_number(t, shown_ratio(v, angle, p->ratio[i]), DIGITS);
+            }
         }
     }
-    mt_table_number(t, tidy(p->hold[0]), HOLD_DIGITS);
+    for (int i = 0; i < v->question->n_drives; i++) {
+        mt_table_number(t, tidy(p->hold[i]), HOLD_DIGITS);
+    }
     for (int i = 0; i < v->modes; i++) {
         mt_table_number(t, v->hz[i + ((ptrdiff_t)point * v->modes)], DIGITS);
     }
@@ -156,13 +194,14 @@ static void write_dead_centre(const mt_sweep_view *v, mt_text *out)
         }
     }
     if (nearest != NULL) {
+        mt_text_add(out, "  Near a dead centre at ");
+        for (int i = 0; i < v->question->n_drives; i++) {
+            mt_text_addf(out, "%s%.6g %s", i > 0 ? ", " : "", shown_position(v, nearest, i),
+                         shown_name(v, mt_sweep_driven(v, i)->angle));
+        }
         mt_text_addf(
-            out,
-            "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
-            "joints %s depend on each other.\n",
-            mt_unit_from_si(shown_drive_unit(v, mt_sweep_driven(v)->angle), nearest->drive[0]),
-            shown_name(v, mt_sweep_driven(v)->angle), nearest->near->distance,
-            nearest->near->joints.text);
+            out, ": about %.2g rad (or model lengths) on, joints %s depend on each other.\n",
+            nearest->near->distance, nearest->near->joints.text);
     }
 }
 
@@ -207,49 +246,96 @@ static const mt_record_column point_columns[] = {
 static const mt_record_table point_rows = MT_R_TABLE_OF(mt_sweep_point_record, point_columns);
 #undef THIS
 
+/* Ratios of a joint to each driven joint. */
+static void csv_ratio_columns(const mt_sweep_view *v, const mt_system_joint *joint, mt_table *t)
+{
+    for (int d = 0; d < v->question->n_drives; d++) {
+        char s[HEADING];
+        const mt_system_joint *const drive = mt_sweep_driven(v, d);
+        const char *const unit = joint->angle == drive->angle ? ""
+                                 : joint->angle               ? "_rad_per_m"
+                                                              : "_m_per_rad";
+        (void)mt_snprintf(s, sizeof s, "%s_ratio%s%s%s", joint->name, several(v) ? "_to_" : "",
+                          several(v) ? drive->name : "", unit);
+        mt_table_column(t, s, s, MT_ALIGN_POINT);
+    }
+}
+
+/* What several joints are driven to, and what holds each. */
+static void csv_drive_columns(const mt_sweep_view *v, bool hold, mt_table *t)
+{
+    for (int d = 0; d < v->question->n_drives; d++) {
+        char s[HEADING];
+        const mt_system_joint *const drive = mt_sweep_driven(v, d);
+        (void)mt_snprintf(s, sizeof s, "%s_%s", drive->name,
+                          !hold                         ? drive_si_unit(drive->angle)
+                          : mt_sweep_holds_moment(v, d) ? "hold_n_m"
+                                                        : "hold_n");
+        mt_table_column(t, s, s, MT_ALIGN_POINT);
+    }
+}
+
 /* Columns, then rows of all points; two configurations with the same joints have the same
  * columns. */
 static void sweep_csv_columns(const mt_sweep_view *v, mt_table *t)
 {
+    const bool angle = mt_sweep_driven(v, 0)->angle;
+    const unsigned hold = mt_sweep_holds_moment(v, 0) ? IN_MOMENT : IN_FORCE;
     char s[HEADING];
     mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
-    mt_table_record_columns(t, &point_rows, mt_sweep_driven(v)->angle ? IN_TURNS : IN_SLIDES);
+    if (several(v)) {
+        csv_drive_columns(v, false, t);
+    } else {
+        mt_table_record_columns(t, &point_rows, angle ? IN_TURNS : IN_SLIDES);
+    }
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const mt_system_joint *const joint = &v->sys->joints[i];
             (void)mt_snprintf(s, sizeof s, "%s_%s", joint->name, drive_si_unit(joint->angle));
             mt_table_column(t, s, s, MT_ALIGN_POINT);
-            (void)mt_snprintf(s, sizeof s, "%s_ratio%s", joint->name,
-                              joint->angle == mt_sweep_driven(v)->angle ? ""
-                              : joint->angle                            ? "_rad_per_m"
-                                                                        : "_m_per_rad");
-            mt_table_column(t, s, s, MT_ALIGN_POINT);
+            csv_ratio_columns(v, joint, t);
         }
     }
-    mt_table_record_columns(t, &point_rows,
-                            MT_IN_CSV |
-                                (unsigned)(mt_sweep_holds_moment(v) ? IN_MOMENT : IN_FORCE));
+    if (several(v)) {
+        csv_drive_columns(v, true, t);
+    }
+    mt_table_record_columns(t, &point_rows, MT_IN_CSV | (several(v) ? 0U : hold));
     for (int i = 0; i < v->modes; i++) {
         (void)mt_snprintf(s, sizeof s, "mode_%d_hz", i + 1);
         mt_table_column(t, s, s, MT_ALIGN_POINT);
     }
 }
 
+static void csv_joints(const mt_sweep_view *v, const mt_sweep_point *p, mt_table *t)
+{
+    for (int i = 0; i < v->sys->n_joints; i++) {
+        if (told(v, i)) {
+            mt_table_number(t, p->coordinate[i], DIGITS);
+            for (ptrdiff_t d = 0; d < v->question->n_drives; d++) {
+                mt_table_number(t, p->ratio[i + (d * v->sys->n_joints)], DIGITS);
+            }
+        }
+    }
+}
+
 static void sweep_csv_rows(const mt_sweep_view *v, mt_table *t)
 {
-    const unsigned hold = mt_sweep_holds_moment(v) ? IN_MOMENT : IN_FORCE;
+    const unsigned hold = mt_sweep_holds_moment(v, 0) ? IN_MOMENT : IN_FORCE;
     for (int k = 0; k < v->sweep.n_points; k++) {
         const mt_sweep_point *const p = &v->sweep.points[k];
         const mt_sweep_point_row row = mt_sweep_point_row_of(v, k);
         mt_table_text(t, v->configuration);
-        mt_table_record_row(t, &point_rows, row.turns ? IN_TURNS : IN_SLIDES, &row);
-        for (int i = 0; i < v->sys->n_joints; i++) {
-            if (told(v, i)) {
-                mt_table_number(t, p->coordinate[i], DIGITS);
-                mt_table_number(t, p->ratio[i], DIGITS);
-            }
+        if (!several(v)) {
+            mt_table_record_row(t, &point_rows, row.turns ? IN_TURNS : IN_SLIDES, &row);
         }
-        mt_table_record_row(t, &point_rows, MT_IN_CSV | hold, &row);
+        for (int d = 0; d < v->question->n_drives && several(v); d++) {
+            mt_table_number(t, p->drive[d], DIGITS);
+        }
+        csv_joints(v, p, t);
+        for (int d = 0; d < v->question->n_drives && several(v); d++) {
+            mt_table_number(t, p->hold[d], DIGITS);
+        }
+        mt_table_record_row(t, &point_rows, MT_IN_CSV | (several(v) ? 0U : hold), &row);
         for (int i = 0; i < v->modes; i++) {
             mt_table_number(t, v->hz[i + ((ptrdiff_t)k * v->modes)], DIGITS);
         }
@@ -324,14 +410,17 @@ static void warn_range(const mt_sweep_view *v)
 {
     static const double ONE_TURN = 6.283185307179586;
     const mt_sweep_question *const r = v->question;
-    double most = 0.0;
-    for (int i = 0; i < r->n; i++) {
-        most = fabs(r->positions[i]) > fabs(most) ? r->positions[i] : most;
-    }
-    if (mt_sweep_driven(v)->angle && fabs(most) > ONE_TURN) {
-        mt_terminal_warning("--drive: %s goes to %g rad, more than a turn: degrees are written "
-                            "\"%g*deg\"",
-                            r->drive.joint, most, most);
+    for (int d = 0; d < r->n_drives; d++) {
+        double most = 0.0;
+        for (int i = 0; i < r->n; i++) {
+            const double at = r->positions[d + ((ptrdiff_t)i * r->n_drives)];
+            most = fabs(at) > fabs(most) ? at : most;
+        }
+        if (mt_sweep_driven(v, d)->angle && fabs(most) > ONE_TURN) {
+            mt_terminal_warning("--drive: %s goes to %g rad, more than a turn: degrees are "
+                                "written \"%g*deg\"",
+                                r->drives[d].joint, most, most);
+        }
     }
 }
 
@@ -340,7 +429,7 @@ static mt_status show_configuration_sweep(void *context, mt_loaded_model *s, int
 {
     sink *const to = context;
     mt_sweep_view v = {.question = NULL};
-    mt_loaded_model_warn_dropped(s, c, "--drive", 1, &to->question.drive);
+    mt_loaded_model_warn_dropped(s, c, "--drive", to->question.n_drives, to->question.drives);
     mt_status rc = mt_sweep_view_take(s, c, &to->question, &v, err);
     if (rc != MT_E_USAGE) {
         (void)mt_err_in(err, rc, "%s", s->path);
@@ -377,8 +466,12 @@ static int run_sweep(const mt_args *args, mt_text *out)
     if (code != MT_EXIT_DONE) {
         goto done;
     }
-    const mt_status rc = mt_sweep_question_read(&s, args->value[MT_OPT_DRIVE],
-                                                args->value[MT_OPT_HOLD], &to.question, &err);
+    const mt_sweep_texts texts = {.n_drives = args->all[MT_OPT_DRIVE].n,
+                                  .drives = args->all[MT_OPT_DRIVE].value,
+                                  .n_holds = args->all[MT_OPT_HOLD].n,
+                                  .holds = args->all[MT_OPT_HOLD].value,
+                                  .grid = args->given[MT_OPT_GRID]};
+    const mt_status rc = mt_sweep_question_read(&s, &texts, &to.question, &err);
     if (args->given[MT_OPT_FREQUENCIES]) {
         to.question.modes = args->count > 0 ? args->count : MT_SWEEP_MODES;
     }

@@ -6,22 +6,33 @@
 #include "io/write_json.h"
 #include "mechanics/sweep.h"
 
-/* The positions of one configuration along the range of a driven joint: what `sweep` tells, as
- * records. */
+/* The positions of one configuration along the range of a driven joint, along a path of several,
+ * or over a grid of them: what `sweep` tells, as records. */
 
 /* Frequencies by position, where no number is given. */
 enum { MT_SWEEP_MODES = 6 };
 
 typedef struct mt_sweep_question {
-    mt_system_drive drive;
-    int n;
-    double *positions; /* [n] rad or m from the reference position */
+    int n_drives;
+    mt_system_drive drives[MT_DRIVES_MOST]; /* [n_drives] */
+    int n;                                  /* positions */
+    int line;          /* of a grid: positions of a line along the last joint; 0: a path */
+    double *positions; /* n_drives x n, rad or m from the reference position */
     int modes;         /* frequencies of so many modes at each position; 0: none */
 } mt_sweep_question;
 
-/* "JOINT=FROM:TO:N" (NULL: refused) with expressions of the model's values, and the spring that
- * holds (NULL: a lock); in the memory of s. Fails: MT_E_USAGE, MT_E_MEMORY. */
-mt_status mt_sweep_question_read(mt_loaded_model *s, const char *drive, const char *hold,
+/* What is asked in texts: drives "JOINT=FROM:TO:N" (none: refused) with expressions of the
+ * model's values; holds "SPRING" of the only joint, or "JOINT=SPRING", others are locked; grid:
+ * each position with each, else all together. */
+typedef struct mt_sweep_texts {
+    int n_drives;
+    const char *const *drives;
+    int n_holds;
+    const char *const *holds;
+    bool grid;
+} mt_sweep_texts;
+/* In the memory of s. Fails: MT_E_USAGE, MT_E_MEMORY. */
+mt_status mt_sweep_question_read(mt_loaded_model *s, const mt_sweep_texts *texts,
                                  mt_sweep_question *out, mt_err *err);
 
 /* The sweep of one configuration. */
@@ -55,10 +66,23 @@ typedef struct mt_swept_joint_row {
     bool turns;
     bool slides;
     double coordinate;
-    double ratio;
+    double ratio; /* to the first driven joint */
+    bool several;
+    int n_ratios;
+    double *ratios; /* to each of several driven joints */
 } mt_swept_joint_row;
 
-/* A position of the driven joint. */
+/* One of several driven joints, at a position. */
+typedef struct mt_swept_drive_row {
+    bool turns;
+    bool slides;
+    double position;
+    bool holds_moment;
+    bool holds_force;
+    double hold;
+} mt_swept_drive_row;
+
+/* A position of the driven joint, the first of several. */
 typedef struct mt_sweep_point_row {
     bool turns;          /* the driven joint: its position is an angle */
     bool slides;         /* else */
@@ -69,6 +93,9 @@ typedef struct mt_sweep_point_row {
     bool reached;
     int n_joints;
     mt_swept_joint_row *joints;
+    bool several;
+    int n_drives;
+    mt_swept_drive_row *drives;
     bool holds_moment;
     bool holds_force;
     double hold_n_m; /* of a moment */
@@ -88,12 +115,22 @@ extern const mt_record mt_sweep_point_record;
 /* Without its lists. */
 mt_sweep_point_row mt_sweep_point_row_of(const mt_sweep_view *v, int point);
 
+/* A driven joint and what holds it. */
+typedef struct mt_swept_hold_row {
+    const char *joint;
+    const char *hold;
+    const char *spring;
+} mt_swept_hold_row;
+
 /* A configuration, swept. */
 typedef struct mt_swept_row {
     const char *configuration;
     const char *joint;
     const char *hold;
     const char *spring;
+    bool several;
+    int n_drives;
+    mt_swept_hold_row *drives;
     int n;
     mt_sweep_point_row *points;
 } mt_swept_row;
@@ -102,9 +139,9 @@ extern const mt_record mt_swept_record;
 /* Write all of it as JSON. Fails: MT_E_MEMORY. */
 mt_status mt_sweep_put(mt_sweep_view *v, mt_json_writer *w, mt_err *err);
 
-/* The driven joint. */
-const mt_system_joint *mt_sweep_driven(const mt_sweep_view *v);
-/* True where the holding force acts along an angle. */
-bool mt_sweep_holds_moment(const mt_sweep_view *v);
+/* A driven joint of the question. */
+const mt_system_joint *mt_sweep_driven(const mt_sweep_view *v, int drive);
+/* True where what holds it acts along an angle. */
+bool mt_sweep_holds_moment(const mt_sweep_view *v, int drive);
 
 #endif

@@ -479,6 +479,85 @@ static void sweep__refuses_in_words(mt_test *t)
     }
 }
 
+/* The arm of driven_arm.json at s and e: k w + g h r cos(s + e + w) = 0 at the wrist, and what
+ * the locks hold, the springs of their joints included. */
+static void check_arm_point(mt_test *t, const run *r, const mt_sweep_point *p)
+{
+    const double arms[] = {0.5 * (1.0 + 1.2 + 0.5), 0.4 * (0.6 + 0.5), 0.1 * 0.5};
+    const double s = p->drive[0];
+    const double e = p->drive[1];
+    const int wrist = joint(r, "wrist");
+    double w = 0.0;
+    for (int i = 0; i < 60; i++) {
+        w = -9.81 * arms[2] * cos(s + e + w) / 60.0;
+    }
+    const double down = 9.81 * arms[2] * sin(s + e + w);
+    const double fore = 9.81 * (arms[1] * cos(s + e) + arms[2] * cos(s + e + w));
+    CHECK_NEAR_ABS(t, p->coordinate[wrist], w, TOL);
+    CHECK_NEAR_ABS(t, p->coordinate[joint(r, "shoulder")], s, TOL);
+    CHECK_NEAR_ABS(t, p->coordinate[joint(r, "elbow")], e, TOL);
+    for (int d = 0; d < 2; d++) {
+        CHECK_NEAR_ABS(t, p->ratio[wrist + (d * r->sweep.n_joints)], down / (60.0 - down), TOL);
+    }
+    CHECK_NEAR_ABS(t, p->hold[0], 900.0 * s + 9.81 * arms[0] * cos(s) + fore, 1e-9);
+    CHECK_NEAR_ABS(t, p->hold[1], 400.0 * e + fore, 1e-9);
+}
+
+static void sweep__two_joints_go_a_path_or_over_a_grid(mt_test *t)
+{
+    enum { SIDE = 4 };
+    const mt_system_drive drives[] = {{.joint = "shoulder"}, {.joint = "elbow"}};
+    for (int grid = 0; grid < 2; grid++) {
+        const int n = grid == 1 ? SIDE * SIDE : SIDE;
+        double positions[2 * SIDE * SIDE];
+        run r = {.model = mech_load(t, "driven_arm")};
+        for (int i = 0; i < n; i++) {
+            positions[2 * i] = -0.5 + 0.4 * (grid == 1 ? i / SIDE : i);
+            positions[2 * i + 1] = 2.0 - 0.9 * (i % SIDE);
+        }
+        const mt_system_def def = {.model = r.model,
+                                   .configuration =
+                                       mt_model_find_configuration(r.model, "drawn"),
+                                   .drive = drives,
+                                   .n_drives = 2,
+                                   .at = positions};
+        const mt_sweep_plan plan = {
+            .n = n, .n_drives = 2, .line = grid == 1 ? SIDE : 0, .positions = positions};
+        r.rc = mt_arena_init(&r.mem, 0, &r.err);
+        r.rc = r.rc == MT_OK ? mt_system_new_of(&def, &r.sys, &r.err) : r.rc;
+        r.rc = r.rc == MT_OK ? mt_linear_new(r.sys, &r.lin, &r.err) : r.rc;
+        r.rc = r.rc == MT_OK ? mt_sweep_run(r.lin, NULL, &plan, NULL, &r.mem, &r.sweep, &r.err)
+                             : r.rc;
+        if (CHECK(t, r.rc == MT_OK && r.sweep.n_reached == n)) {
+            for (int i = 0; i < n; i++) {
+                mt_test_row(t, "%s, point %d", grid == 1 ? "grid" : "path", i);
+                check_arm_point(t, &r, &r.sweep.points[i]);
+            }
+        }
+        run_free(&r);
+    }
+}
+
+/* Crank and rocker of a four-bar: one freedom. */
+static void sweep__two_drives_of_one_freedom_are_named(mt_test *t)
+{
+    const mt_system_drive drives[] = {{.joint = "jA"}, {.joint = "jD"}};
+    const double at[] = {0.0, 0.0};
+    run r = {.model = mech_load(t, "four_bar")};
+    const mt_system_def def = {.model = r.model, .drive = drives, .n_drives = 2, .at = at};
+    r.rc = mt_arena_init(&r.mem, 0, &r.err);
+    r.rc = r.rc == MT_OK ? mt_system_new_of(&def, &r.sys, &r.err) : r.rc;
+    r.rc = r.rc == MT_OK ? mt_linear_new(r.sys, &r.lin, &r.err) : r.rc;
+    if (CHECK(t, r.rc == MT_OK)) {
+        CHECK(t, mt_linear_update(r.lin, at, false, &r.err) == MT_E_INPUT);
+        CHECK_STR(t, r.err.text,
+                  "joints \"jA\" and \"jD\" cannot both be driven: they are one freedom of the "
+                  "loop of joints \"jA\", \"jB\", \"jC\", \"jD\", and driving one moves the "
+                  "other");
+    }
+    run_free(&r);
+}
+
 static void sweep__a_joint_that_others_hold_is_named(mt_test *t)
 {
     const mt_system_drive drive = {.joint = "left"};
@@ -550,4 +629,6 @@ MT_TEST_MAIN(MT_TEST(sweep__failing_allocations_are_errors),
              MT_TEST(sweep__a_locked_rod_is_held_by_its_moment),
              MT_TEST(sweep__meets_the_configuration_that_drives_the_same),
              MT_TEST(sweep__refuses_in_words),
+             MT_TEST(sweep__two_joints_go_a_path_or_over_a_grid),
+             MT_TEST(sweep__two_drives_of_one_freedom_are_named),
              MT_TEST(sweep__a_joint_that_others_hold_is_named))
