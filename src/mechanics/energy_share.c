@@ -67,12 +67,14 @@ static mt_status find_bodies(const mt_system *sys, mt_arena *mem, mt_energy_owne
     return MT_OK;
 }
 
-/* The link whose element a spring of the system is: its name up to the last point. */
+/* The link whose element or hinge a spring of the system is, by its name ("beam.e3",
+ * "beam.k1"); NULL: a spring or a joint of the model. */
 static const mt_link *link_of_spring(const mt_system *sys, const mt_spring_def *s)
 {
-    const char *const item = sys->items[s->item].name;
     for (int i = 0; i < sys->model->n_links; i++) {
-        if (sys->model->links[i].name.s == item) {
+        const char *const name = sys->model->links[i].name.s;
+        const size_t length = strlen(name);
+        if (strncmp(s->name, name, length) == 0 && s->name[length] == '.') {
             return &sys->model->links[i];
         }
     }
@@ -114,7 +116,7 @@ static mt_status find_springs(const mt_system *sys, mt_arena *mem, mt_energy_own
             (mt_energy_owner){.name = name,
                               .first = i,
                               .count = 1,
-                              .link = spring == NULL,
+                              .link = link != NULL,
                               .bushing = spring != NULL && spring->type == MT_SPRING_BUSHING};
     }
     return mt_arena_check(mem, err);
@@ -205,29 +207,28 @@ static void unit3(double v[3], double dv[3])
 /* Axes as drawn. */
 
 /* Moments of inertia J of body b as drawn, along the global axes, and their derivative by input
- * p. False: it has none. */
-static bool inertia_of(const mt_linear *lin, int b, int p, double j[9], double dj[9])
+ * p (-1: none). False: it has none. */
+static bool inertia_of(mt_linear *lin, int b, int p, double j[9], double dj[9])
 {
     const mt_system *const sys = lin->sys;
     bool any = false;
     memset(j, 0, 9 * sizeof *j);
     memset(dj, 0, 9 * sizeof *dj);
+    lin->dual.input = p;
+    mt_data_vecs(&lin->dual);
     for (int i = 0; i < sys->n_inertias; i++) {
         const mt_inertia_def *const d = &sys->inertias[i];
         if (d->kind != MT_INERTIA_ROTATION || d->body[0] != b) {
             continue;
         }
-        const double c = lin->value[d->coefficient];
-        const double dc = p < 0 ? 0.0 : mt_linear_slope(lin, d->coefficient, p);
-        const mt_node *const u = sys->vecs[d->dir[0]].node;
-        const mt_node *const v = sys->vecs[d->dir[1]].node;
+        const mt_cx c = mt_data_scalar(&lin->dual, d->coefficient, 0.0);
+        const mt_cx *const u = lin->dual.vec[d->dir[0]];
+        const mt_cx *const v = lin->dual.vec[d->dir[1]];
         for (int k = 0; k < 9; k++) {
-            const int row = k % 3;
-            const int col = k / 3;
-            const double both = 0.5 * ((lin->value[u[row]] * lin->value[v[col]]) +
-                                       (lin->value[v[row]] * lin->value[u[col]]));
-            j[k] += c * both;
-            dj[k] += dc * both;
+            const mt_cx both = cx_mul(u[k % 3], v[k / 3]) + cx_mul(v[k % 3], u[k / 3]);
+            const mt_cx term = cx_mul(c, 0.5 * both);
+            j[k] += creal(term);
+            dj[k] += p < 0 ? 0.0 : cx_derivative(term);
         }
         any = true;
     }
