@@ -735,7 +735,7 @@ static int joint_axis(mt_builder *b, const mt_joint *joint)
 
 /*
  * A joint that yields: bodies[0] - springs, and equations where it is rigid - carrier - joint -
- * bodies[1]. The carrier has neither mass nor freedom but what the springs leave it; the joint's
+ * bodies[1]. The carrier has neither mass nor freedom but what springs leave it; the joint's
  * equations carry the bearing's force.
  */
 static void yielding_axes(mt_builder *b, const mt_joint *joint, int axis, int dir[3])
@@ -781,7 +781,7 @@ static int build_carrier(mt_builder *b, const mt_joint *joint, int first)
     return build_body(b, mt_build_name(b, "%s.bearing", joint->name.s), at, false);
 }
 
-/* What of the carrier is rigid, as equations of a joint of their own; `of` is the joint on it. */
+/* What of the carrier is rigid, as equations of a joint of their own; `of`: the joint on it. */
 static void build_seat(mt_builder *b, const mt_joint *joint, int of, const int first[2],
                        const int dir[3])
 {
