@@ -33,7 +33,8 @@ LINES = {
     "examples": [[]],
     "modes": [
         ["tests/models/pendulum.json", "--shapes"],
-        ["tests/models/massless.json", "--effective-mass"],
+        ["tests/models/massless.json"],
+        ["wheel.json", "--effective-mass"],
         ["tests/models/apart.json"],
         ["tests/models/damped_linkage.json", "--damped"],
         ["problems/stick.json", "-c", "installed", "--shapes"],
@@ -150,6 +151,13 @@ ABOUT = {
     "model": "one.json", "variables": [{"parameter": "k", "lower": 100, "upper": 400}],
 }
 
+# A wheel without mass: no mass that a share could be of.
+WHEEL = {
+    "format": "modetune-model/1", "dimension": 2, "bodies": [{"name": "wheel", "mass_kg": 0, "inertia_kg_m2": 1, "centre": [0, 0]}],
+    "joints": [{"name": "axle", "type": "revolute", "bodies": ["ground", "wheel"], "at": [0, 0]}],
+    "springs": [{"name": "s", "type": "torsion", "joint": "axle", "stiffness_n_m_per_rad": 1}],
+}
+
 # Parallel cranks, the last with a length of its own: no length but the drawn one closes the joints.
 CRANKS = {
     "format": "modetune-model/1", "dimension": 2, "parameters": {"far": 3, "other": 3},
@@ -236,7 +244,7 @@ class Answers(unittest.TestCase):
             (cls.folder / name).symlink_to(SOURCE / name)
         for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS),
                             ("slider", SLIDER), ("shaken", SHAKEN), ("one", ONE), ("free", FREE), ("profile", PROFILE),
-                            ("along", {**PROFILE, "axis": "x"}), ("about", ABOUT)):
+                            ("along", {**PROFILE, "axis": "x"}), ("about", ABOUT), ("wheel", WHEEL)):
             (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
         cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}
 
