@@ -67,6 +67,17 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_ABOUT, '\0', "about", "X,Y,Z", BIT(MT_CMD_MODES),
            "with --effective-mass: the point that rotations of the ground are about, in m "
            "(default: 0,0,0, the origin)"),
+    OPTION(MT_OPT_ENERGY, '\0', "energy", NULL, BIT(MT_CMD_MODES),
+           "who has the energy of each mode: kinetic by body and direction, strain by spring "
+           "and component, in percent (the table leaves out what is below 0.5 %; CSV: these "
+           "shares alone)"),
+    OPTION(MT_OPT_ENERGY_ABOUT, '\0', "energy-about", "POINT", BIT(MT_CMD_MODES),
+           "with --energy: directions about this point of the model, which each body carries "
+           "(default: each body's centre)"),
+    OPTION(MT_OPT_AXES, '\0', "axes", "AXES", BIT(MT_CMD_MODES),
+           "with --energy: along global axes, the principal ones of each body's inertia, or "
+           "with its torque roll axis in the place of x, y or z: global, principal, "
+           "torque_roll_x, torque_roll_y or torque_roll_z (default: global)"),
     REPEATED(
         MT_OPT_DRIVE, "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
         "the joint (or a link's hinge) that is driven, through N positions counted from "

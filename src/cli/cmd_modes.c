@@ -217,6 +217,226 @@ static void print_effective(const mt_modes_view *v, mt_text *out)
                      "rigidly along a direction has no mode in it.\n");
 }
 
+/* Energies. */
+
+/* A share below this is left blank [%]. */
+static const double TOLD_PERCENT = 0.5;
+static const char LOADS[] = "(gravity, loads, preload)";
+
+/* True where position i begins its frequency: modes of one frequency share a column. */
+static bool begins_frequency(const mt_modes_view *v, int i)
+{
+    return v->energies.shares[i].first == i;
+}
+
+static mt_table energy_columns(const mt_modes_view *v, const char *what)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, what, "name", MT_ALIGN_LEFT);
+    for (int i = 0; i < v->shown; i++) {
+        char heading[64];
+        const int index = mt_modes_index(v->m, i);
+        const int first = index > 0 ? index : i + 1;
+        const int last = first + v->energies.shares[i].modes - 1;
+        const char *const open = index > 0 ? "" : "(";
+        const char *const close = index > 0 ? "" : ")";
+        (void)(last > first
+                   ? mt_snprintf(heading, sizeof heading, "%smodes %d-%d%s", open, first, last,
+                                 close)
+                   : mt_snprintf(heading, sizeof heading, "%smode %d%s", open, first, close));
+        if (begins_frequency(v, i)) {
+            mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+        }
+    }
+    return t;
+}
+
+/* A row of the shares percent[i * step] of all columns, unless all of it is blank. */
+static void energy_line(const mt_modes_view *v, const char *name, const double *percent,
+                        mt_table *t)
+{
+    bool any = false;
+    for (int i = 0; i < v->shown; i++) {
+        any = any || fabs(percent[i]) >= TOLD_PERCENT;
+    }
+    if (!any) {
+        return;
+    }
+    mt_table_text(t, name);
+    for (int i = 0; i < v->shown; i++) {
+        char text[32] = "";
+        if (fabs(percent[i]) >= TOLD_PERCENT) {
+            (void)mt_snprintf(text, sizeof text, "%.1f", percent[i]);
+        }
+        if (begins_frequency(v, i)) {
+            mt_table_cell(t, text, text);
+        }
+    }
+}
+
+/* What a name and a direction are called: "engine.rx". */
+static const char *line_name(const char *name, int direction, mt_arena *mem)
+{
+    const char *const joined =
+        mt_arena_printf(mem, "%s.%s", name, mt_energy_directions[direction]);
+    return joined == NULL ? name : joined;
+}
+
+static void print_kinetic(const mt_modes_view *v, const mt_energy_row *rows, mt_arena *mem,
+                          double *percent, mt_text *out)
+{
+    mt_table t = energy_columns(v, "body");
+    for (int b = 0; b < v->energies.owners.n_bodies; b++) {
+        for (int k = 0; k < MT_ENERGY_DIRECTIONS; k++) {
+            for (int i = 0; i < v->shown; i++) {
+                percent[i] = rows[i].kinetic[b].percent[k];
+            }
+            energy_line(v, line_name(rows[0].kinetic[b].body, k, mem), percent, &t);
+        }
+    }
+    mt_text_add(out, "\n  Kinetic energy [%]\n");
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+}
+
+/* The share of spring k of a mode, of one component or (-1) of all; NaN where it has none. */
+static double strain_of(const mt_energy_row *row, int k, int component)
+{
+    if (row->strain == NULL) {
+        return nan("");
+    }
+    return component < 0 ? row->strain[k].total : row->strain[k].percent[component];
+}
+
+static void print_strain(const mt_modes_view *v, const mt_energy_row *rows, mt_arena *mem,
+                         double *percent, mt_text *out)
+{
+    mt_table t = energy_columns(v, "spring");
+    for (int k = 0; k < v->energies.owners.n_springs; k++) {
+        const mt_energy_owner *const o = &v->energies.owners.springs[k];
+        for (int c = o->bushing ? 0 : -1; c < (o->bushing ? MT_ENERGY_DIRECTIONS : 0); c++) {
+            for (int i = 0; i < v->shown; i++) {
+                percent[i] = strain_of(&rows[i], k, c);
+            }
+            energy_line(v, c < 0 ? o->name : line_name(o->name, c, mem), percent, &t);
+        }
+    }
+    for (int i = 0; i < v->shown; i++) {
+        percent[i] = rows[i].loads;
+    }
+    energy_line(v, LOADS, percent, &t);
+    mt_text_add(out, "\n  Strain energy [%]\n");
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+}
+
+/* The records of all modes shown, and room for a line, in mem; NULL: memory is out. */
+static mt_energy_row *energy_rows(const mt_modes_view *v, mt_arena *mem, double **percent)
+{
+    mt_energy_row *const rows = mt_arena_alloc(mem, (size_t)v->shown, sizeof *rows);
+    *percent = mt_arena_f64(mem, (size_t)v->shown, 1);
+    for (int i = 0; i < v->shown && rows != NULL; i++) {
+        rows[i] = mt_energy_row_of(v->a->sys, &v->energies, i, mem);
+    }
+    return mt_arena_failed(mem) ? NULL : rows;
+}
+
+/* Print matrices of energies, with what they mean. */
+static void print_energies(const mt_modes_view *v, mt_text *out)
+{
+    mt_arena mem;
+    double *percent = NULL;
+    double off = 0.0;
+    if (mt_arena_init(&mem, 0, NULL) != MT_OK) {
+        out->failed = true;
+        return;
+    }
+    const mt_energy_row *const rows = energy_rows(v, &mem, &percent);
+    if (rows == NULL) {
+        out->failed = true;
+    } else {
+        print_kinetic(v, rows, &mem, percent, out);
+        print_strain(v, rows, &mem, percent, out);
+        for (int i = 0; i < v->shown; i++) {
+            off = fmax(off, fabs(rows[i].kinetic_sum - (100.0 * rows[i].modes)));
+            off = fmax(off, isfinite(rows[i].strain_sum)
+                                ? fabs(rows[i].strain_sum - (100.0 * rows[i].modes))
+                                : 0.0);
+        }
+        mt_text_addf(
+            out,
+            "  Blank: below %.1f %%. Each column sums to 100 %% for each of its modes "
+            "(within %.0e %%); a share is below 0 where axes couple, or loads soften.\n",
+            TOLD_PERCENT, off > 0.0 ? pow(10.0, ceil(log10(off))) : DBL_EPSILON);
+    }
+    mt_arena_free(&mem);
+}
+
+/* CSV: a row for each share. */
+static mt_table energy_table(void)
+{
+    static const char *const columns[] = {"configuration", "mode", "frequency_hz", "modes",
+                                          "energy",        "name", "direction",    "percent"};
+    mt_table t = mt_table_default();
+    for (int i = 0; i < MT_COUNT(columns); i++) {
+        const bool text = i == 0 || (i >= 4 && i < 7);
+        mt_table_column(&t, columns[i], columns[i], text ? MT_ALIGN_LEFT : MT_ALIGN_POINT);
+    }
+    return t;
+}
+
+static void energy_cells(const mt_modes_view *v, int i, const char *energy, const char *name,
+                         const char *direction, double percent, mt_table *t)
+{
+    const int index = mt_modes_index(v->m, i);
+    mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
+    if (index > 0) {
+        mt_table_integer(t, index);
+    } else {
+        mt_table_text(t, NULL);
+    }
+    mt_table_number(t, mt_modal_hz(v->m, i), HZ_DIGITS);
+    mt_table_integer(t, v->energies.shares[i].modes);
+    mt_table_text(t, energy);
+    mt_table_text(t, name);
+    mt_table_text(t, direction);
+    mt_table_number(t, percent, HZ_DIGITS);
+}
+
+static void energy_csv(const mt_modes_view *v, mt_table *t)
+{
+    mt_arena mem;
+    double *percent = NULL;
+    if (mt_arena_init(&mem, 0, NULL) != MT_OK) {
+        t->failed = true;
+        return;
+    }
+    const mt_energy_row *const rows = energy_rows(v, &mem, &percent);
+    t->failed = t->failed || rows == NULL;
+    for (int i = 0; i < v->shown && rows != NULL; i++) {
+        for (int k = 0; k < rows[i].n_kinetic * MT_ENERGY_DIRECTIONS; k++) {
+            const mt_energy_body_row *const b = &rows[i].kinetic[k / MT_ENERGY_DIRECTIONS];
+            const int d = k % MT_ENERGY_DIRECTIONS;
+            if (isfinite(b->percent[d])) {
+                energy_cells(v, i, "kinetic", b->body, mt_energy_directions[d], b->percent[d],
+                             t);
+            }
+        }
+        for (int k = 0; k < rows[i].n_strain; k++) {
+            const mt_energy_spring_row *const s = &rows[i].strain[k];
+            for (int d = 0; d < MT_ENERGY_DIRECTIONS && s->components; d++) {
+                energy_cells(v, i, "strain", s->spring, mt_energy_directions[d], s->percent[d],
+                             t);
+            }
+            if (!s->components) {
+                energy_cells(v, i, "strain", s->spring, NULL, s->total, t);
+            }
+        }
+        energy_cells(v, i, "strain", LOADS, NULL, rows[i].loads, t);
+    }
+    mt_arena_free(&mem);
+}
+
 /* Note where modes are left out that were not declined by an option. */
 static void write_others(const mt_modes_view *v, bool asked, mt_text *out)
 {
@@ -300,6 +520,9 @@ static void text_view(const mt_modes_view *v, bool asked, mt_text *out)
     if (v->n_effective > 0) {
         print_effective(v, out);
     }
+    if (v->energies.n > 0) {
+        print_energies(v, out);
+    }
     if (v->question.damped) {
         damped_print(v->damped, v->question.count, out);
     }
@@ -321,6 +544,13 @@ typedef struct sink {
 
 static mt_status csv_view(sink *to, const mt_modes_view *v)
 {
+    if (v->question.energy) { /* so are the shares of energy */
+        if (to->table.n_columns == 0 && !to->table.failed) {
+            to->table = energy_table();
+        }
+        energy_csv(v, &to->table);
+        return MT_OK;
+    }
     if (v->question.damped) { /* a table of its own kind: the damped modes alone */
         if (to->table.n_columns == 0 && !to->table.failed) {
             to->table = mt_table_default();
@@ -356,7 +586,10 @@ static mt_status show_configuration_modes(void *context, mt_loaded_model *s, int
         .shapes = args->given[MT_OPT_SHAPES],
         .damped = args->given[MT_OPT_DAMPED],
         .effective_mass = args->given[MT_OPT_EFFECTIVE_MASS],
-        .about_m = {args->about_m[0], args->about_m[1], args->about_m[2]}};
+        .about_m = {args->about_m[0], args->about_m[1], args->about_m[2]},
+        .energy = args->given[MT_OPT_ENERGY],
+        .energies = {.about = args->value[MT_OPT_ENERGY_ABOUT],
+                     .axes = args->value[MT_OPT_AXES]}};
     mt_modes_view v = {.s = NULL};
     to->run.progress = mt_watch_begin(args, 0, "modes");
     mt_status rc = mt_modes_view_take(s, c, &question, &v, err);
@@ -398,6 +631,11 @@ static int run_modes(const mt_args *args, mt_text *out)
         mt_terminal_error("--about goes with --effective-mass");
         return MT_EXIT_INPUT;
     }
+    if ((args->given[MT_OPT_ENERGY_ABOUT] || args->given[MT_OPT_AXES]) &&
+        !args->given[MT_OPT_ENERGY]) {
+        mt_terminal_error("--energy-about and --axes go with --energy");
+        return MT_EXIT_INPUT;
+    }
     int code =
         mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
@@ -435,7 +673,10 @@ const mt_command mt_command_modes = {
         "locked "
         "drive, which holds its position relative to its first body; loads and gravity stay as "
         "they are. Over all modes the sum is the mass that moves (the moment of inertia about "
-        "the point of --about), except what a direction holds rigidly.",
+        "the point of --about), except what a direction holds rigidly.\n"
+        "--energy: the energies of each mode, kinetic by body and direction, strain by spring "
+        "and by a bushing's component, and what gravity, loads and preloads give; modes of one "
+        "frequency together.",
     .answer = {&mt_modes_record, MT_ANSWER_CONFIGURATIONS},
     .run = run_modes,
 };

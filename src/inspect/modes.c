@@ -295,6 +295,8 @@ static const mt_field mode_fields[] = {
         "With --shapes: the mass-normalised shape at the sensors, or without sensors the "
         "motions of the bodies, by name [1/sqrt(kg) and rad/(m sqrt(kg))].",
         MT_F_WHEN(with_shape)),
+    MT_F_RECORD("energy", energy, mt_energy_row, mt_energy_record,
+                "With --energy: who has its energy.", MT_F_WHEN(with_energy)),
 };
 const mt_record mt_mode_record = MT_F_RECORD_OF(mode_fields, "mode", "A mode.");
 #undef THIS
@@ -525,6 +527,10 @@ static mt_status modes_row_of(mt_modes_view *v, mt_modes_row *out, mt_err *err)
     out->modes = mt_arena_alloc(&v->mem, (size_t)v->shown, sizeof *out->modes);
     for (int i = 0; i < v->shown && out->modes != NULL; i++) {
         out->modes[i] = mt_mode_row_of(v, i, false);
+        out->modes[i].with_energy = v->energies.n > 0;
+        if (v->energies.n > 0) {
+            out->modes[i].energy = mt_energy_row_of(v->a->sys, &v->energies, i, &v->mem);
+        }
     }
     if (v->question.damped) {
         out->damped =
@@ -585,6 +591,13 @@ static mt_status solve_modes(mt_modes_view *v, mt_err *err)
     const mt_lowest_want want = {.count = q->count, .shapes = q->shapes || q->effective_mass};
     char why[MT_LOWEST_DAMPED_WHY] = "";
     bool is = true;
+    if (q->energy) {
+        MT_TRY(mt_loaded_model_admit_dense(s, v->c, "shares of energy take all modes", err));
+        MT_TRY(mt_loaded_model_analyse(s, v->c, 0, &v->a, err));
+        v->m = &v->a->modes;
+        return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list,
+                                       err);
+    }
     MT_TRY(q->damped && q->count > 0 ? solve_few_damped(v, &is, why, err)
                                      : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs,
                                                               s->at, want, &v->l, err));
@@ -618,6 +631,10 @@ mt_status mt_modes_view_take(const mt_loaded_model *s, int c, const mt_modes_que
                             : shapes_of(v->a, v->shown, &v->mem, &v->shapes, err));
     }
     MT_TRY(question->effective_mass ? find_effective(v, err) : MT_OK);
+    if (question->energy) {
+        MT_TRY(mt_energies_take(s->model, v->a, &question->energies, v->shown, &v->mem,
+                                &v->energies, err));
+    }
     return question->damped && v->l == NULL ? mt_analysis_damped(v->a, &v->damped, err) : MT_OK;
 }
 

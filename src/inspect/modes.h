@@ -4,6 +4,7 @@
 
 #include "analysis/lowest_damped.h"
 #include "base/diagnostics.h"
+#include "inspect/energies.h"
 #include "inspect/loaded_model.h"
 #include "io/write_json.h"
 #include "mechanics/base_motion.h"
@@ -21,7 +22,9 @@ typedef struct mt_modes_question {
     bool shapes; /* at the sensors, or without sensors motions of the bodies */
     bool damped; /* the modes with damping, too */
     bool effective_mass;
-    double about_m[3]; /* that rotations of the ground are about */
+    double about_m[3];             /* that rotations of the ground are about */
+    bool energy;                   /* who has their energy, too */
+    mt_energies_question energies; /* about what */
 } mt_modes_question;
 
 /* Shapes of modes at the sensors, or, without sensors, as motions of the bodies. */
@@ -60,6 +63,7 @@ typedef struct mt_modes_view {
     mt_mode_shapes shapes; /* n 0: not asked for */
     int n_effective;       /* directions; 0: not asked for */
     mt_effective_row *effective;
+    mt_energies energies; /* n 0: not asked for */
     const mt_damped_modes *damped;
     mt_lowest_damped few; /* of a large mechanism: `damped` is of these */
     mt_warning_list warning_list;
@@ -86,6 +90,8 @@ typedef struct mt_mode_row {
     double orthogonality;
     bool with_shape;
     double *shape; /* by channel */
+    bool with_energy;
+    mt_energy_row energy;
 } mt_mode_row;
 
 extern const mt_record mt_mode_record;

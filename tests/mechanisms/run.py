@@ -27,6 +27,7 @@ SLOPES = Decimal("1e-6")    # of derivatives, in frequency per parameter
 MODEST = Decimal("1e-6")    # relative, of a bound where nothing cancels
 SHAPES = Decimal("1e-7")    # of shapes, in their largest entry
 ABOUT = "0.3,-0.2,0.1"      # point [m] that the ground turns about
+SHARES = Decimal("1e-5")    # of energies [%]
 STEP = Decimal("1e-20")     # relative, of a parameter; the oracle has eighty digits
 LAST_DIGIT = Decimal(2) ** -52
 APART = Decimal("1e-4")     # relative; closer frequencies have no derivative of their own
@@ -63,6 +64,7 @@ class Judgement:
         self.expected = {**self.modes.counts(), "redundant": self.modes.redundant}
         self.hz = self.modes.hz()
         self.tones = 0  # of a motion, that were compared
+        self.shares = 0  # of energies, that were compared
 
     def agree(self, answer, factor=1):
         """Sentences on what an answer of the program has wrong."""
@@ -198,6 +200,31 @@ class Judgement:
                     yield "effective", f"mode {i + 1} has an effective mass of {given} along {row['direction']}, exact {float(own)}"
                     return
 
+    def energies(self, answer):
+        """By body and direction, and by spring, of modes that stand alone; links by the sum of their elements."""
+        values = self.modes.values
+        for i, mode in enumerate(answer.said["modes"] if answer.said else []):
+            gap = min((abs(values[i] - x) for j, x in enumerate(values) if j != i), default=values[i])
+            if mode["kind"] != "flexible" or gap < APART * values[i]:
+                continue
+            told = mode["energy"]
+            given = {f"{b['body']}.{d}": b[f"{d}_percent"] for b in told["kinetic"] for d in ("x", "y", "z", "rx", "ry", "rz")}
+            given.update({s["spring"]: s["percent"] for s in told["strain"]})
+            exact = {key: x for key, x in self.modes.kinetic(i).items() if key in given}
+            for name, x in self.modes.strain(i).items():
+                owner = name if name in given else name.rpartition(".")[0]
+                if owner in given:
+                    exact[owner] = exact.get(owner, Decimal(0)) + x
+            self.shares += len(exact)
+            for key, x in exact.items():
+                if given[key] is None or abs(number(given[key]) - 100 * x) > SHARES:
+                    yield "energies", f"mode {i + 1}: {key} has {given[key]} % of the energy, exact {100 * x:.12g} %"
+                    return
+            for what in ("kinetic", "strain"):
+                if abs(number(told[f"{what}_sum_percent"]) - 100) > SHARES:
+                    yield "energies", f"mode {i + 1}: {what} energies sum to {told[f'{what}_sum_percent']} %"
+                    return
+
     def rest(self):
         """Where the centre of mass comes to rest."""
         exact = self.modes.centre()
@@ -246,7 +273,7 @@ class Judgement:
 
     def findings(self):
         """(check, sentence)."""
-        answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes", "--effective-mass", "--about", ABOUT)
+        answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes", "--energy", "--effective-mass", "--about", ABOUT)
         found = list(self.agree(answer))
         yield from found
         if found:
@@ -264,6 +291,7 @@ class Judgement:
         if not self.modes.dead_centre:
             yield from self.shapes(answer)
             yield from self.effective(answer) if not answer.code else ()
+            yield from self.energies(answer)
             yield from self.rest()
             yield from self.slopes()
             yield from self.damping()
@@ -287,6 +315,7 @@ class Mechanisms(campaign.Generator):
             raise campaign.LeftOut(why) from None
         yield from judgement.findings()
         tally["tones"] += judgement.tones
+        tally["shares"] += judgement.shares
 
 
 if __name__ == "__main__":

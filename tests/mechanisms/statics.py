@@ -456,6 +456,34 @@ class Modes:
             out[name] = dot(r, momentum), momentum
         return out
 
+    def kinetic(self, i):
+        """Shares of mode i of all bodies, motion times momentum: {"b0.x": ..., "b0.rz": ...}, in sum 1."""
+        q, u, oracle, motion, out = self.state.q, self.shapes[i], self.problem.oracle, self.motion(i), {}
+        w = [Decimal(0)] * len(u)
+        for (a, b), x in oracle.mass.items():
+            w[a] += x * u[b]
+            if a != b:
+                w[b] += x * u[a]
+        for name, body in oracle.bodies.items():
+            at = body.first
+            momentum = {f"{name}.{'xyz'[k]}": w[at + k] for k in range(oracle.dim)}
+            if body.turns and oracle.dim == 2:
+                momentum[f"{name}.rz"] = q[at + 2] * w[at + 3] - q[at + 3] * w[at + 2]
+            elif body.turns:
+                row = lambda v, k, at=at: v[at + 3 + 3 * k:at + 6 + 3 * k]
+                for k in range(3):  # of a turn R' = e^ R
+                    momentum[f"{name}.r{'xyz'[k]}"] = (dot(row(w, (k + 2) % 3), row(q, (k + 1) % 3)) - dot(row(w, (k + 1) % 3), row(q, (k + 2) % 3)))
+            out.update({key: motion[key] * p for key, p in momentum.items()})
+        return out
+
+    def strain(self, i):
+        """Shares of mode i of the springs, by name."""
+        elastic, _ = self.state.terms(self.y, self.shapes[i])
+        out = {}
+        for spring, energy in zip(self.problem.oracle.springs, elastic):
+            out[spring.name] = out.get(spring.name, Decimal(0)) + energy / self.values[i]
+        return out
+
     def centre(self):
         """Of all masses, at rest."""
         q, weights = self.state.q, self.problem.oracle.weights

@@ -36,6 +36,8 @@ LINES = {
         ["tests/models/massless.json"],
         ["wheel.json", "--effective-mass"],
         ["tests/models/apart.json"],
+        ["tests/models/ring.json", "--energy"],
+        ["tests/models/space_stick.json", "-c", "plain", "--energy"],
         ["tests/models/damped_linkage.json", "--damped"],
         ["problems/stick.json", "-c", "installed", "--shapes"],
         ["tests/models/falling.json", "-c", "default"],
