@@ -257,6 +257,29 @@ static void energy__shares_of_an_engine_have_exact_slopes(mt_test *t)
     mech_free(&m);
 }
 
+/* Moments of inertia along axes of the body's own, which turn with an input. */
+static void energy__axes_of_a_body_may_turn_with_inputs(mt_test *t)
+{
+    static const asked rows[] = {
+        {"engine", MT_ENERGY_MOTION, 3, {.point = 0, .axes = MT_ENERGY_AXES_PRINCIPAL}},
+        {"engine",
+         MT_ENERGY_MOTION,
+         4,
+         {.point = MT_ABSENT, .axes = MT_ENERGY_AXES_TORQUE_ROLL_Y}},
+        MOVES("engine", 5)};
+    mech m;
+    if (mech_must(t,
+                  mech_parse(t, ENGINE("[\"j\", \"2*j\", \"2.5*j\", \"p\", \"-p/2\", 0.3],"
+                                       " \"axes\": {\"angles_rad\": [\"4*d\", 0.2, \"j/20\"]}",
+                                       "[0, 0.1, \"-d\"]", COUPLED)),
+                  NULL, "j p d", &m)) {
+        for (int i = 0; i < MT_COUNT(rows); i++) {
+            check_slopes(t, &m, "turned", &rows[i], 3);
+        }
+    }
+    mech_free(&m);
+}
+
 /* Loops that close elsewhere, gravity, a driven position, turning axes. */
 static void energy__shares_of_a_linkage_have_exact_slopes(mt_test *t)
 {
@@ -471,6 +494,7 @@ MT_TEST_MAIN(MT_TEST(energy__two_masses_have_their_closed_form),
              MT_TEST(energy__decoupled_modes_have_all_of_one_direction),
              MT_TEST(energy__shares_sum_to_one),
              MT_TEST(energy__shares_of_an_engine_have_exact_slopes),
+             MT_TEST(energy__axes_of_a_body_may_turn_with_inputs),
              MT_TEST(energy__shares_of_a_linkage_have_exact_slopes),
              MT_TEST(energy__shares_under_load_and_without_mass_have_exact_slopes),
              MT_TEST(energy__modes_of_one_frequency_share_together),
