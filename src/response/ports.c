@@ -134,8 +134,8 @@ static int count_forces(const mt_system *sys, const char *own, bool damper, int 
     return count;
 }
 
-/* True where forces of this name are components: of a bushing, or of a joint's bearing, which is
- * one of the system alone. */
+/* True where forces of this name are components: of a bushing, or of a joint's bearing, which
+ * is one of the system alone. */
 static bool is_bushing(const mt_system *sys, const char *own, bool damper)
 {
     const mt_model *const m = sys->model;

@@ -317,9 +317,7 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     if (mt_goal_has(kind, "bands_hz")) {
         mt_study_check_avoid(c, goal);
     }
-    if (mt_goal_has(kind, "against")) {
-        mt_study_check_static(c, goal);
-    } else if (mt_goal_has(kind, "output")) {
+    if (mt_goal_has(kind, "output")) {
         mt_study_check_response_limit(c, goal);
     }
     if (goal->energy != NULL) {

@@ -658,27 +658,6 @@ static void check_profile(mt_study_check *c, const mt_goal *goal, mt_response_li
     }
 }
 
-void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal)
-{
-    mt_response_limit *const s = goal->response_limit;
-    if (s == NULL) {
-        return; /* memory is out */
-    }
-    if (s->measurement_name.s != NULL) {
-        s->measurement = mt_check_measurement(c, s->measurement_name);
-        check_range(c, s, goal->addr);
-        return; /* its number is a distance, without a unit */
-    }
-    if (s->quantity == MT_RESPONSE_LIMIT_RESPONSE) {
-        check_frequencies(c, goal, s);
-    } else if (s->profile != NULL) {
-        check_profile(c, goal, s);
-    }
-    if (s->input.s != NULL && s->output.s != NULL) {
-        find_unit(c, s);
-    }
-}
-
 /* Unit of what "joint.NAME.COMPONENT" has at rest; NULL: not known. */
 static const char *joint_unit(const mt_model *m, const char *port)
 {
@@ -704,12 +683,10 @@ static const char *static_unit(const mt_model *m, const char *port)
     return begins(port, joint) ? joint_unit(m, port + strlen(joint)) : output_unit(m, port);
 }
 
-void mt_study_check_static(mt_study_check *c, mt_goal *goal)
+/* Check the other configuration of a goal about rest, and find its unit. */
+static void check_static(mt_study_check *c, const mt_goal *goal)
 {
     mt_static_limit *const s = goal->static_limit;
-    if (s == NULL) {
-        return; /* memory is out */
-    }
     if (s->against_name.s != NULL) {
         s->against = mt_check_configuration(c, c->model, s->against_name);
     }
@@ -728,6 +705,30 @@ void mt_study_check_static(mt_study_check *c, mt_goal *goal)
                       : mt_arena_printf(&c->study->mem, "%s per %s", out, in);
     } else if (out != NULL) {
         s->unit = out;
+    }
+}
+
+void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal)
+{
+    mt_response_limit *const s = goal->response_limit;
+    if (goal->static_limit != NULL) {
+        check_static(c, goal);
+    }
+    if (s == NULL) {
+        return; /* about rest, or memory is out */
+    }
+    if (s->measurement_name.s != NULL) {
+        s->measurement = mt_check_measurement(c, s->measurement_name);
+        check_range(c, s, goal->addr);
+        return; /* its number is a distance, without a unit */
+    }
+    if (s->quantity == MT_RESPONSE_LIMIT_RESPONSE) {
+        check_frequencies(c, goal, s);
+    } else if (s->profile != NULL) {
+        check_profile(c, goal, s);
+    }
+    if (s->input.s != NULL && s->output.s != NULL) {
+        find_unit(c, s);
     }
 }
 

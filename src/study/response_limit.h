@@ -69,10 +69,9 @@ extern const mt_key_table mt_study_response_keys;
 
 struct mt_goal;
 struct mt_study_check;
-/* Check frequencies, profile and measurement of a goal about ports, and find its unit. */
+/* Check frequencies, profile, measurement or other configuration of a goal about ports, and
+ * find its unit. */
 void mt_study_check_response_limit(struct mt_study_check *c, struct mt_goal *goal);
-/* Check the other configuration of a goal about rest, and find its unit. */
-void mt_study_check_static(struct mt_study_check *c, struct mt_goal *goal);
 void mt_study_check_responses(struct mt_study_check *c);
 
 #endif
