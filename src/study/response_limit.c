@@ -663,6 +663,9 @@ static const char *joint_unit(const mt_model *m, const char *port)
 {
     static const char hold[] = ".hold";
     const char *const dot = strrchr(port, '.');
+    if (dot == NULL) {
+        return NULL;
+    }
     if (strcmp(dot, hold) != 0) {
         return turns(port) ? "N m" : "N";
     }

@@ -316,6 +316,7 @@ class Goals(Program):
     def test_refusals(self):
         still = hung()
         self.assertIn('/goals/0/output: no output is called "joint.rail.rx"', self.refused(still, {"output": "joint.rail.rx"}))
+        self.assertIn('no output is called "joint.rail"', self.refused(still, {"output": "joint.rail"}))
         self.assertIn("nothing holds it", self.refused(still, {"output": "joint.rail.hold"}))
         self.assertIn("at rest nothing has a velocity", self.refused(still, {"output": "tip.x:velocity"}))
         self.assertIn("the displacement of a sensor", self.refused(still, {"output": "spring.s", "input": "tip.y"}))
