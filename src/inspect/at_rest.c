@@ -131,7 +131,8 @@ mt_status mt_rest_rows_of(mt_analysis *a, mt_arena *mem, mt_rest_rows *out, mt_e
         if (!mt_joint_kind_of(j->type)->couples) {
             MT_TRY(add_components(&l, "joint", j->name, false, err));
         }
-        if (sys->driven && sys->drive_joint == i && !sys->trim) {
+        const int drive = mt_system_drive_of(sys, i);
+        if (drive >= 0 && sys->drives[drive].spring < 0) {
             MT_TRY(add(&l, mt_arena_printf(mem, "joint.%s.hold", j->name), err));
         }
     }

@@ -289,9 +289,11 @@ mt_status mt_model_sweep(const mt_model *model, const mt_sweep_options *options,
     MT_TRY(MT_OPTIONS_TAKE(options, &own, err));
     MT_TRY(mt_err_in(err, check_sweep(&own, err), "%s", __func__));
     mt_status rc = open_model(model, own.configuration, own.n_sets, own.sets, &s, err);
-    rc = rc == MT_OK ? mt_sweep_question_read(&s, own.n_drives == 0 ? NULL : own.drives[0],
-                                              own.hold, &question, err)
-                     : rc;
+    const mt_sweep_texts texts = {.n_drives = own.n_drives,
+                                  .drives = own.drives,
+                                  .n_holds = own.hold == NULL ? 0 : 1,
+                                  .holds = &own.hold};
+    rc = rc == MT_OK ? mt_sweep_question_read(&s, &texts, &question, err) : rc;
     if (own.frequencies != 0) {
         question.modes = own.count > 0 ? own.count : MT_SWEEP_MODES;
     }

@@ -32,7 +32,8 @@ static int count_dofs(const mt_system *sys, int body)
 /* Equations of a joint, with that of its locked drive. */
 static int count_equations(const mt_system *sys, int joint)
 {
-    const bool locked = joint == sys->drive_joint && sys->drive_constraint >= 0 && !sys->trim;
+    const int drive = mt_system_drive_of(sys, joint);
+    const bool locked = drive >= 0 && sys->drives[drive].spring < 0;
     return sys->joints[joint].count + (locked ? 1 : 0);
 }
 
