@@ -540,7 +540,7 @@ static void put_at(const mt_copy *c, const char *name, mt_addr addr)
 }
 
 /* The sign of a component in the axes of a mirrored copy. Axes are right-handed, so that of the
- * images of three of them the last one is taken the other way: displacements along the third and
+ * images of three of them the last is taken the other way: displacements along the third and
  * rotations about the first two change their signs. */
 static double mirrored_sign(const mt_copy *c, int component)
 {

@@ -139,11 +139,6 @@ void mt_copy_item(mt_copy *c, const char *list, mt_addr item);
 /* The unit vector of a member of plain numbers of a matched object: an axis, in two dimensions
  * that of the plane and not to be given, or another direction. False (noted) where wrong. */
 bool mt_read_axis(mt_maker *m, const mt_object *o, const char *member, double *u);
-/* Write out the repeat of this index; the last one takes the list away. Fails as
- * mt_maker_end. */
-mt_status mt_expand_repeat(mt_json *doc, const char *path, mt_expansion *all, int index,
-                           bool last, mt_err *err);
-
 /* A number or an expression of the document itself, in this unit; false (noted) where wrong. */
 bool mt_read_own(mt_maker *m, mt_addr value, const mt_unit *unit, mt_term *out);
 /* Coordinates or the name of a point; an absent one is the origin. */

@@ -7,6 +7,7 @@
 
 #include "io/file.h"
 #include "model/copy.h"
+#include "model/repeat.h"
 
 static const mt_key ROTATE[] = {
     MT_M_JUST("axis", LIST, false, AXIS,
@@ -28,7 +29,7 @@ static const mt_key INCLUDE[] = {
               .pattern = "^[A-Za-z_][A-Za-z0-9_]*$"),
     MT_M_JUST("at", TEXT_OR_LIST, false, POINT,
               "Where its origin is: the name of a point, or coordinates. Absent: the origin.",
-              .schema = MT_I_OF("position")),
+              .schema = "\"allOf\": [{" MT_I_OF("position") "}]"),
     MT_M_OBJECT("rotate", mt_rotate_keys),
     MT_M_JUST("parameters", OBJECT, false, ANY,
               "Values of its parameters, by their names there: numbers, in the unit that the "

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* "repeat": copies of items of a document, around an axis, along a line, behind a mirror. */
+#include "model/repeat.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "model/copy.h"
 
 static const mt_key POLAR[] = {
     MT_M_JUST(
@@ -13,7 +13,7 @@ static const mt_key POLAR[] = {
         .schema = MT_DIRECTION),
     MT_M_JUST("about", TEXT_OR_LIST, false, POINT,
               "Where the axis is: the name of a point, or coordinates. Absent: the origin.",
-              .schema = MT_I_OF("position")),
+              .schema = "\"allOf\": [{" MT_I_OF("position") "}]"),
     MT_M_JUST(
         "angle_rad", NUMBER, false, ANY,
         "From one copy to the next, right-handed about the axis [rad]. Absent: a full turn "
@@ -41,7 +41,8 @@ static const mt_key MIRROR[] = {
               "Instead of plane: the direction across it, three plain numbers.",
               .schema = MT_DIRECTION),
     MT_M_JUST("about", TEXT_OR_LIST, false, POINT,
-              "A position in the plane. Absent: the origin.", .schema = MT_I_OF("position")),
+              "A position in the plane. Absent: the origin.",
+              .schema = "\"allOf\": [{" MT_I_OF("position") "}]"),
 };
 const mt_key_table mt_mirror_keys = {.what = "mirror",
                                      .keys = MIRROR,
