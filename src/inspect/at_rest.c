@@ -86,6 +86,14 @@ static mt_status add_components(listing *l, const char *of, const char *name, bo
     return MT_OK;
 }
 
+/* Springs and equations of a joint's compliance have their force in common with the joint, which
+ * tells it. */
+static bool is_bearing(const char *name)
+{
+    const char *const last = name == NULL ? NULL : strrchr(name, '.');
+    return last != NULL && strcmp(last, ".bearing") == 0;
+}
+
 /* Forces of the springs that have a name: of the elements of a bushing its components; beams
  * have none by themselves. */
 static mt_status add_springs(listing *l, mt_err *err)
@@ -100,7 +108,7 @@ static mt_status add_springs(listing *l, mt_err *err)
             end++;
         }
         const bool bushing = kind == MT_MEASURE_PLANE || kind == MT_MEASURE_ROTATION;
-        if (s->name != NULL && !s->damper && kind != MT_MEASURE_BEAM) {
+        if (s->name != NULL && !s->damper && kind != MT_MEASURE_BEAM && !is_bearing(s->name)) {
             MT_TRY(bushing && end > i + 1
                        ? add_components(l, "spring", s->name, true, err)
                        : add(l, mt_arena_printf(l->mem, "spring.%s", s->name), err));
@@ -128,7 +136,7 @@ mt_status mt_rest_rows_of(mt_analysis *a, mt_arena *mem, mt_rest_rows *out, mt_e
     }
     for (int i = 0; i < sys->n_joints; i++) {
         const mt_system_joint *const j = &sys->joints[i];
-        if (!mt_joint_kind_of(j->type)->couples) {
+        if (!mt_joint_kind_of(j->type)->couples && !is_bearing(j->name)) {
             MT_TRY(add_components(&l, "joint", j->name, false, err));
         }
         const int drive = mt_system_drive_of(sys, i);

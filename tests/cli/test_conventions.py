@@ -158,6 +158,45 @@ class Conventions(CliTest):
             result = self.json_of("run", self.write("studies/c.json", json.dumps(study)))
             self.assertEqual(result["status_text"].startswith("default: it settles far away from the drawing"), far, result["status_text"])
 
+    def test_axes_of_a_mount(self):
+        """By its axes, and by the matrix that these make of k and 4 k."""
+        body = {"name": "b", "mass_kg": 2, "inertia_kg_m2": [0.1, 0.2, 0.3], "centre": [0.1, 0, 0.2]}
+        space = {"format": "modetune-model/1", "dimension": 3, "parameters": {"a": 0.7}, "gravity_m_per_s2": [0, 0, -9.81], "bodies": [body]}
+        mount = {"name": "s", "type": "bushing", "bodies": ["ground", "b"], "at": [0, 0, 0]}
+        yy, zz, yz = ("1e4*(1 + 3*sin(a)^2)", "1e4*(1 + 3*cos(a)^2)", "-3e4*sin(a)*cos(a)")
+        rows = [["1e4" if i == j else 0 for j in range(6)] for i in range(6)]
+        rows[1][1:3], rows[2][1:3] = [yy, yz], [yz, zz]
+        lists = {"stiffness_n_per_m": [1e4, 1e4, 4e4], "stiffness_n_m_per_rad": [1e4, 1e4, 1e4]}
+        written = [dict(mount, stiffness_matrix=rows), dict(mount, axes={"angles_rad": ["a", 0, 0]}, **lists),
+                   dict(mount, axes={"x": [3, 0, 0], "z": [5, "-sin(a)", "cos(a)"]}, **lists)]
+        answers = [self.json_of("sensitivity", self.write("problems/c.json", json.dumps(dict(space, springs=[s]))))[0]["modes"] for s in written]
+        self.assertIn("along its own axes x (1, 0, 0), y (0, 0.7648, 0.6442), z (0, -0.6442, 0.7648)", self.info(dict(space, springs=[written[1]]))[1])
+        for answer in answers[1:]:
+            for got, want in zip(answer, answers[0], strict=True):
+                self.assertLess(abs(got["frequency_hz"] / want["frequency_hz"] - 1), 1e-12)
+                got, want = (m["sensitivities"][0]["hz_per_unit"] for m in (got, want))
+                self.assertLess(abs(got - want), 1e-10 + 1e-9 * abs(want))
+
+    def test_a_bearing_that_yields(self):
+        """As a carrier made by hand, at rest and driven; the joint tells what it carries."""
+        arm = {"name": "arm", "mass_kg": 2, "inertia_kg_m2": [0.1, 0.2, 0.3], "centre": [0.3, 0, 0]}
+        pin = {"name": "pin", "type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0, 0], "axis": [0, 1, 0]}
+        bearing = [2e5, 3e5, 1e5]  # along x, y, z
+        own = {"format": "modetune-model/1", "dimension": 3, "gravity_m_per_s2": [0, 0, -9.81], "bodies": [arm],
+               "joints": [dict(pin, compliance={"axes": {"x": [0, 0, 1]}, "stiffness_n_per_m": [1e5, 2e5, 3e5], "loss_factor": 0.1})],
+               "springs": [{"name": "s", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": 500}],
+               "configurations": {"rest": {}, "up": {"drive": {"joint": "pin", "position_rad": 0.4, "hold": {"trim": "s"}}}}}
+        carrier = {"name": "carrier", "inertia_kg_m2": [0, 0, 0], "centre": [0, 0, 0]}
+        hand = dict(own, bodies=[arm, carrier], joints=[dict(pin, bodies=["carrier", "arm"]), {"name": "o", "type": "orientation", "bodies": ["ground", "carrier"]}],
+                    springs=own["springs"] + [{"name": "b", "type": "bushing", "bodies": ["ground", "carrier"], "at": [0, 0, 0], "stiffness_n_per_m": bearing,
+                                               "stiffness_n_m_per_rad": [0, 0, 0], "loss_factor": 0.1}])
+        answers = [self.json_of("modes", self.write("problems/c.json", json.dumps(model)), "--damped") for model in (own, hand)]
+        for got, want in zip(*answers, strict=True):
+            for a, b in zip(got["damped_modes"], want["damped_modes"], strict=True):
+                for member in ("natural_frequency_hz", "damping_ratio_percent"):
+                    self.assertLess(abs(a[member] - b[member]), 1e-11 * abs(b[member]) + 1e-12)
+        self.assertIn('joint "pin": yields across its axis', self.info(own)[1])
+
 
 if __name__ == "__main__":
     main()
