@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune response: how forces and a moving ground shake a mechanism. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -402,9 +401,9 @@ static mt_status save_state_space(const mt_response_view *v, const mt_args *args
     for (int i = 0; i < n; i++) {
         failed = failed || text[i].failed;
         if (n == 1) {
-            (void)snprintf(names[i], sizeof names[i], "%s", name);
+            (void)mt_snprintf(names[i], sizeof names[i], "%s", name);
         } else {
-            (void)snprintf(names[i], sizeof names[i], "%.*s_%c.mtx", stem, name, 'A' + i);
+            (void)mt_snprintf(names[i], sizeof names[i], "%.*s_%c.mtx", stem, name, 'A' + i);
         }
         files[i] = (mt_folder_file){names[i], text[i].s, text[i].length};
     }

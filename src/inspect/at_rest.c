@@ -86,8 +86,8 @@ static mt_status add_components(listing *l, const char *of, const char *name, bo
     return MT_OK;
 }
 
-/* Springs and equations of a joint's compliance have their force in common with the joint, which
- * tells it. */
+/* Springs and equations of a joint's compliance have their force in common with the joint,
+ * which tells it. */
 static bool is_bearing(const char *name)
 {
     const char *const last = name == NULL ? NULL : strrchr(name, '.');
@@ -96,7 +96,7 @@ static bool is_bearing(const char *name)
 
 /* Forces of the springs that have a name: of the elements of a bushing its components; beams
  * have none by themselves. */
-static mt_status add_springs(listing *l, mt_err *err)
+static mt_status list_springs(listing *l, mt_err *err)
 {
     const mt_system *const sys = l->a->sys;
     for (int i = 0; i < sys->n_springs;) {
@@ -129,7 +129,7 @@ mt_status mt_rest_rows_of(mt_analysis *a, mt_arena *mem, mt_rest_rows *out, mt_e
     for (int i = 0; i < sys->n_channels; i++) {
         MT_TRY(add(&l, sys->channels[i].name, err));
     }
-    MT_TRY(add_springs(&l, err));
+    MT_TRY(list_springs(&l, err));
     if (mt_linear_redundant(a->lin) > 0) {
         const double more = WORK / ((double)sys->nq * sys->nq);
         l.most = (int)fmin(MOST, out->n + more);

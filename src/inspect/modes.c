@@ -364,7 +364,7 @@ static const mt_field effective_fields[] = {
     MT_F_NUMBER_OR_NULL("sum_percent", sum_percent,
                         "That in percent of the total; null: the total is 0."),
     MT_F_NUMBERS("participation", participation, n_modes,
-                 "Participation factor of each mode, in their order, of the mass-normalised "
+                 "Participation factor of each of the modes, of the mass-normalised "
                  "shape [sqrt(kg) or m sqrt(kg)]."),
     MT_F_NUMBERS("effective_mass", mass, n_modes,
                  "Effective modal mass of each: the square of that."),

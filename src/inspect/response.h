@@ -7,7 +7,6 @@
 #include "analysis/lowest.h"
 #include "environment/vibration.h"
 #include "inspect/loaded_model.h"
-#include "inspect/state_space.h"
 #include "io/write_json.h"
 #include "response/response.h"
 #include "vibration/profile_response.h"
@@ -104,6 +103,37 @@ const char *mt_vibrated_unit(const mt_vibrated *v);
 
 /* How forces, a moving ground and a profile of vibration shake one configuration: what
  * `response` tells, as records. */
+
+/* State space: the mechanism between the ports as x' = A x + B u, y = C x + D u. */
+
+/* A row of a matrix. */
+typedef struct mt_matrix_row {
+    double *value;
+    int n;
+    int step; /* from one to the next */
+} mt_matrix_row;
+
+typedef struct mt_state_space_row {
+    int modes;
+    int residual_shapes;
+    const char **states;
+    int n_states;
+    mt_port *inputs;
+    int n_inputs;
+    mt_port *outputs;
+    int n_outputs;
+    mt_matrix_row *a; /* [n_states] */
+    mt_matrix_row *b;
+    mt_matrix_row *c; /* [n_outputs] */
+    mt_matrix_row *d;
+    bool viscous_for_loss_factors;
+    double from_hz; /* where it was compared */
+    double to_hz;
+    int compared;
+    double largest_difference_percent; /* NaN: nowhere compared */
+} mt_state_space_row;
+
+extern const mt_record mt_state_space_record;
 
 typedef struct mt_response_question {
     int n_inputs;
@@ -262,7 +292,6 @@ typedef struct mt_answered_response_row {
 } mt_answered_response_row;
 
 extern const mt_record mt_answered_response_record;
-extern const mt_record mt_response_port_record;
 
 /* A pair is an output of an input: all outputs of the first input, then of the next. */
 int mt_response_view_pairs(const mt_response_view *v);

@@ -6,7 +6,7 @@
 #include "io/write_json.h"
 #include "mechanics/sweep.h"
 
-/* The positions of one configuration along the range of a driven joint, along a path of several,
+/* The positions of one configuration along the range of a driven joint, a path of several,
  * or over a grid of them: what `sweep` tells, as records. */
 
 /* Frequencies by position, where no number is given. */

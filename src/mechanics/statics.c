@@ -166,7 +166,7 @@ static mt_cx stretch(const rest_place *p, int spring, int side)
 }
 
 /* Component of a bushing that a measure is. */
-static int component_of(const mt_measure_def *m)
+static int axis_of_measure(const mt_measure_def *m)
 {
     return m->component + (m->kind == MT_MEASURE_ROTATION ? 3 : 0);
 }
@@ -201,7 +201,7 @@ static mt_cx read_spring(const rest_place *p, const mt_static *q)
             continue;
         }
         for (int side = 0; side < (s->measure[0] == s->measure[1] ? 1 : 2); side++) {
-            if (q->axis < 0 || component_of(&sys->measures[s->measure[side]]) == q->axis) {
+            if (q->axis < 0 || axis_of_measure(&sys->measures[s->measure[side]]) == q->axis) {
                 force += element_force(p, i, side);
             }
         }

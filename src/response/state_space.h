@@ -14,9 +14,9 @@
  * Modes are mass-normalised; of those above the lowest `keep` only the static response to each
  * input remains, as residual shapes: the responses that the kept modes leave, orthogonal to
  * these in mass and stiffness, each with a frequency of its own above theirs. (Residual
- * vectors; MacNeal, Computers and Structures 1 (1971) 581-601, in the form of proper modes.) At rest the
- * response is that of all modes, and accelerations have a finite limit at high frequencies,
- * which a static correction in D alone has not.
+ * vectors; MacNeal, Computers and Structures 1 (1971) 581-601, in the form of proper modes.) At
+ * rest the response is that of all modes, and accelerations have a finite limit at high
+ * frequencies, which a static correction in D alone has not.
  *
  * Loss factors have no real state space: each becomes the viscous damping that takes as much
  * energy from each mode at its own frequency, c_ij = h_ij/sqrt(w_i w_j).
@@ -44,9 +44,9 @@ typedef struct mt_state_space {
 
 /* From a basis of all modes, results in mem. keep: lowest modes; more than there are: all.
  * Rigid-body modes are always kept. O(n^2 + n_out n). Fails: MT_E_USAGE where there is no
- * proper state space, with the reason: an input whose derivative acts (velocity or displacement of the
- * ground), an output that follows a derivative of an input, loss factors at a direction without
- * mass; MT_E_MEMORY. */
+ * proper state space, with the reason: an input whose derivative acts (velocity or displacement
+ * of the ground), an output that follows a derivative of an input, loss factors at a direction
+ * without mass; MT_E_MEMORY. */
 mt_status mt_state_space_make(const mt_basis *basis, int keep, mt_arena *mem,
                               mt_state_space *out, mt_err *err);
 

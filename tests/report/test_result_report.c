@@ -45,9 +45,12 @@ static mt_result *make(mt_test *t)
                                           100.0,
                                           "logarithmic with floor",
                                           0.05,
-                                          nan("")};
-    parameters[1] = (mt_result_parameter){"m",     NULL, NULL, nan(""),  1.0,     0.5, -50.0,
-                                          "lower", 0.5,  2.0,  "linear", nan(""), 2.0};
+                                          nan(""),
+                                          NULL,
+                                          NULL};
+    parameters[1] =
+        (mt_result_parameter){"m", NULL, NULL,     nan(""), 1.0, 0.5,  -50.0, "lower",
+                              0.5, 2.0,  "linear", nan(""), 2.0, NULL, NULL};
     for (int i = 0; i < 2; i++) {
         frequencies[i] = mt_result_frequency_default();
         frequencies[i].configuration = "held";

@@ -350,7 +350,7 @@ class ModelConfiguration(TypedDict, total=False):
     like: str
     parameters: Dict[str, "ModelNumber"]
     gravity_m_per_s2: "ModelVector"
-    drive: "ModelDrive"
+    drive: Union["ModelDrive", List["ModelDrive"]]
     damping: "ModelDamping"
     description: str
     source: str
@@ -366,6 +366,7 @@ class ModelDrive(_ModelDriveAlways, total=False):
     position_rad: "ModelNumber"
     position_m: "ModelNumber"
     hold: Union[Literal["lock"], "ModelHold"]
+    free: bool
     description: str
     source: str
 
@@ -427,6 +428,76 @@ class ModelDamping(TypedDict, total=False):
     source: str
 
 
+class _ModelIncludeAlways(TypedDict):
+    file: str
+    prefix: str
+
+
+class ModelInclude(_ModelIncludeAlways, total=False):
+    """A sub-assembly: the parameters, curves, points, bodies, links, joints, springs, dampers,
+    loads and sensors of another model file, in that file's units. Its gravity, damping, modes
+    and configurations are for itself alone.
+    """
+
+    at: "ModelPosition"
+    rotate: "ModelRotate"
+    parameters: Dict[str, "ModelNumber"]
+    ground: str
+    description: str
+
+
+class _ModelRotateAlways(TypedDict):
+    angle_rad: "ModelNumber"
+
+
+class ModelRotate(_ModelRotateAlways, total=False):
+    """Turned about an axis through its origin."""
+
+    axis: List[float]
+
+
+class _ModelRepeatAlways(TypedDict):
+    of: List[str]
+
+
+class ModelRepeat(_ModelRepeatAlways, total=False):
+    """Copies of items, numbered from 2, since the first is the item itself: mount, mount_2,
+    mount_3; mirrored: mount, mount_m.
+    """
+
+    polar: "ModelPolar"
+    linear: "ModelLinear"
+    mirror: "ModelMirror"
+    kinds: List[
+        Literal["points", "bodies", "links", "joints", "springs", "dampers", "loads", "sensors"]
+    ]
+    count: int
+    suffix: str
+    description: str
+
+
+class ModelPolar(TypedDict, total=False):
+    """Copies around an axis."""
+
+    axis: List[float]
+    about: "ModelPosition"
+    angle_rad: "ModelNumber"
+
+
+class ModelLinear(TypedDict):
+    """Copies along a line."""
+
+    step: "ModelVector"
+
+
+class ModelMirror(TypedDict, total=False):
+    """A copy on the other side of a plane."""
+
+    plane: Literal["xy", "xz", "yz"]
+    normal: List[float]
+    about: "ModelPosition"
+
+
 class _ModelAlways(TypedDict):
     format: Literal["modetune-model/1"]
     dimension: Literal[2, 3]
@@ -444,6 +515,8 @@ _ModelSometimes = TypedDict("_ModelSometimes", {
         "spring", "target", "tolerance", "unit", "weight"]
     ],
     "units": "ModelUnits",
+    "include": List["ModelInclude"],
+    "repeat": List["ModelRepeat"],
     "gravity_m_per_s2": "ModelVector",
     "curves": Dict[str, "ModelCurve"],
     "parameters": Dict[str, Union["ModelNumber", "ModelParameter"]],
@@ -506,17 +579,16 @@ class StudySpread(_StudySpreadAlways, total=False):
     source: str
 
 
-class _StudyVariableAlways(TypedDict):
-    parameter: str
-
-
-class StudyVariable(_StudyVariableAlways, total=False):
-    """A parameter that the study may change: within two bounds, or to an entry of a catalogue.
+class StudyVariable(TypedDict, total=False):
+    """A parameter that the study may change: within two bounds, or to an entry of a catalogue;
+    or several that a row of a catalogue of parts sets together.
     """
 
+    parameter: str
+    parameters: Union[List[str], Dict[str, Union[str, List[str]]]]
     lower: "StudyNumber"
     upper: "StudyNumber"
-    catalogue: Union[List["StudyNumber"], "StudyCatalogue"]
+    catalogue: Union[List["StudyNumber"], "StudyCatalogue", str]
     weight: "StudyNumber"
     scale: "StudyNumber"
     tolerance_percent: "StudyNumber"
@@ -636,6 +708,19 @@ class StudyCatalogue(_StudyCatalogueAlways, total=False):
     source: str
 
 
+class StudyParts(TypedDict, total=False):
+    """Parts that come with several numbers at once: a row is chosen whole."""
+
+    file: str
+    columns: List[str]
+    units: List[str]
+    rows: List[List[float]]
+    names: List[str]
+    tolerance_percent: List[Optional["StudyNumber"]]
+    description: str
+    source: str
+
+
 class _StudyTradeAlways(TypedDict):
     vary: List["StudyVary"]
 
@@ -663,7 +748,7 @@ class StudyVary(_StudyVaryAlways, total=False):
     bound: Literal["lower", "upper"]
     member: Literal[
         "target_hz", "at_least_hz", "at_most_hz", "at_least", "target", "at_most", "equals",
-        "margin_percent"
+        "margin_percent", "at_least_percent", "at_most_percent"
     ]
     description: str
     source: str
@@ -838,6 +923,32 @@ class StudyGoalDamping(_StudyGoalDampingAlways, total=False):
     at_least: "StudyNumber"
     at_most: "StudyNumber"
     weight: "StudyNumber"
+
+
+class _StudyGoalEnergyAlways(TypedDict):
+    type: Literal["energy"]
+    mode: "StudyMode"
+
+
+class StudyGoalEnergy(_StudyGoalEnergyAlways, total=False):
+    """The share of a mode's energy that a body has in a direction, or a spring: how far modes
+    are decoupled. No proof covers it.
+    """
+
+    description: str
+    source: str
+    tolerance_percent: "StudyNumber"
+    configuration: str
+    configurations: List[str]
+    body: str
+    spring: str
+    direction: Literal["x", "y", "z", "rx", "ry", "rz"]
+    directions: List[str]
+    component: Literal["x", "y", "z", "rx", "ry", "rz"]
+    about: str
+    axes: Literal["global", "principal", "torque_roll_x", "torque_roll_y", "torque_roll_z"]
+    at_least_percent: "StudyNumber"
+    at_most_percent: "StudyNumber"
 
 
 class _StudyGoalResponseAlways(TypedDict):
@@ -1031,6 +1142,7 @@ _StudySometimes = TypedDict("_StudySometimes", {
         "spring", "target", "tolerance", "unit", "weight"]
     ],
     "units": "StudyUnits",
+    "catalogues": Dict[str, "StudyParts"],
     "variables": List["StudyVariable"],
     "goals": List["StudyGoal"],
     "objective": Union[List["StudyObjective"], "StudyObjective"],
@@ -1325,6 +1437,8 @@ class ResultParameter(_ResultParameterAlways, total=False):
     display_factor: Optional[float]
     lower: Optional[float]
     upper: Optional[float]
+    catalogue: str
+    part: str
 
 
 class ResultFrequency(TypedDict):
@@ -1429,8 +1543,8 @@ class _ResultGoalAlways(TypedDict):
     goal: str
     pointer: str
     type: Literal[
-        "frequency", "shape", "mac", "damping", "response", "vibration", "frequency_response",
-        "static", "limit", "avoid", "ratio", "apart"
+        "frequency", "shape", "mac", "damping", "energy", "response", "vibration",
+        "frequency_response", "static", "limit", "avoid", "ratio", "apart"
     ]
     configuration: Optional[str]
     mode: Optional[int]
@@ -2441,6 +2555,47 @@ class CommandModesMode(_CommandModesModeAlways, total=False):
     """A mode."""
 
     shape: Dict[str, float]
+    energy: "CommandModesModeEnergy"
+
+
+class CommandModesModeEnergy(TypedDict):
+    """Who has the energy of a mode."""
+
+    modes: int
+    kinetic: List["CommandModesKineticEnergy"]
+    kinetic_sum_percent: float
+    strain: Optional[List["CommandModesStrainEnergy"]]
+    loads_percent: Optional[float]
+    strain_sum_percent: Optional[float]
+
+
+class CommandModesKineticEnergy(TypedDict):
+    """Shares of a mode's kinetic energy [%]; below 0 where axes couple."""
+
+    body: str
+    axes: Literal["global", "principal", "torque_roll_x", "torque_roll_y", "torque_roll_z"]
+    percent: float
+    x_percent: float
+    y_percent: float
+    z_percent: Optional[float]
+    rx_percent: Optional[float]
+    ry_percent: Optional[float]
+    rz_percent: Optional[float]
+
+
+class CommandModesStrainEnergy(TypedDict):
+    """Shares of a mode's strain energy [%]; of a component below 0 where the bushing's matrix
+    couples.
+    """
+
+    spring: str
+    percent: float
+    x_percent: Optional[float]
+    y_percent: Optional[float]
+    z_percent: Optional[float]
+    rx_percent: Optional[float]
+    ry_percent: Optional[float]
+    rz_percent: Optional[float]
 
 
 class CommandModesDampedMode(TypedDict):
@@ -2882,14 +3037,18 @@ class CommandSimulate(_CommandSimulateAlways, total=False):
     input_error: float
 
 
-class CommandSweepConfiguration(TypedDict):
-    """A configuration, swept."""
-
+class _CommandSweepConfigurationAlways(TypedDict):
     configuration: str
     joint: str
     hold: Literal["lock", "trim"]
     spring: Optional[str]
     points: List["CommandSweepPoint"]
+
+
+class CommandSweepConfiguration(_CommandSweepConfigurationAlways, total=False):
+    """A configuration, swept."""
+
+    drives: List["CommandSweepDrive"]
 
 
 class CommandSweepFailed(TypedDict):
@@ -2899,11 +3058,20 @@ class CommandSweepFailed(TypedDict):
     error: str
 
 
+class CommandSweepDrive(TypedDict):
+    """One of several driven joints and what holds it."""
+
+    joint: str
+    hold: Literal["lock", "trim"]
+    spring: Optional[str]
+
+
 class CommandSweepPoint(TypedDict, total=False):
     """A position of the driven joint."""
 
     position_rad: float
     position_m: float
+    drives: List["CommandSweepDriven"]
     error: str
     joints: List["CommandSweepJoint"]
     hold_n_m: float
@@ -2917,6 +3085,15 @@ class CommandSweepPoint(TypedDict, total=False):
     undecided_modes: int
 
 
+class CommandSweepDriven(TypedDict, total=False):
+    """One of several driven joints."""
+
+    position_rad: float
+    position_m: float
+    hold_n_m: float
+    hold_n: float
+
+
 class _CommandSweepJointAlways(TypedDict):
     name: str
     ratio: float
@@ -2927,6 +3104,7 @@ class CommandSweepJoint(_CommandSweepJointAlways, total=False):
 
     coordinate_rad: float
     coordinate_m: float
+    ratios: List[Optional[float]]
 
 
 class CommandSweepDeadCentre(TypedDict):
@@ -2948,8 +3126,8 @@ StudyMode = Union[int, str]
 StudyPair = List["StudyNumber"]
 StudyGoal = Union[
     "StudyGoalOf", "StudyGoalFrequency", "StudyGoalShape", "StudyGoalMac", "StudyGoalDamping",
-    "StudyGoalResponse", "StudyGoalVibration", "StudyGoalFrequencyResponse", "StudyGoalStatic",
-    "StudyGoalLimit", "StudyGoalAvoid", "StudyGoalRatio", "StudyGoalApart"
+    "StudyGoalEnergy", "StudyGoalResponse", "StudyGoalVibration", "StudyGoalFrequencyResponse",
+    "StudyGoalStatic", "StudyGoalLimit", "StudyGoalAvoid", "StudyGoalRatio", "StudyGoalApart"
 ]
 ProfilePair = List[float]
 ProfileBreakpoints = List[Union["ProfilePair", "ProfileSlope"]]
