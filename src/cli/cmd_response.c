@@ -271,7 +271,7 @@ static void print_state_space(const mt_state_space_row *s, mt_text *out)
                      s->residual_shapes, s->residual_shapes == 1 ? "" : "s");
     }
     mt_text_add(out, ".\n");
-    if (!isnan(s->largest_difference_percent)) {
+    if (s->compared > 0) {
         mt_text_addf(out,
                      "  It differs from the response of all modes by at most %.2g %% at %d "
                      "frequencies from %.6g to %.6g Hz\n  (in percent of the magnitude, or of "

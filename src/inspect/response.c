@@ -261,7 +261,7 @@ enum { COMPARED = 200 };
 #define THIS mt_matrix_row
 static const mt_field matrix_fields[] = {
     MT_F_NUMBERS(NULL, value, n,
-                 "A row of the matrix, in the units of its state, port or time.",
+                 "A row of the matrix, in SI.",
                  MT_F_EVERY(step)),
 };
 static const mt_record matrix_record = MT_F_BARE_RECORD_OF(matrix_fields);
@@ -276,27 +276,26 @@ static const mt_field state_space_fields[] = {
                "Names of the states: amplitude [m sqrt(kg)] and rate of each mode and residual "
                "shape, amplitudes of directions without mass, integrals of inputs."),
     MT_F_LIST("inputs", inputs, n_inputs, mt_port, port_record,
-              "Of the columns of B and D, one each.", .flat = true),
+              "Of the columns of B and D, one each, with its unit.", .flat = true),
     MT_F_LIST("outputs", outputs, n_outputs, mt_port, port_record,
-              "Of the rows of C and D, one each.", .flat = true),
+              "Of the rows of C and D, one each, with its unit.", .flat = true),
     MT_F_LIST("A", a, n_states, mt_matrix_row, matrix_record,
-              "Rows of A in x' = A x + B u, time in seconds."),
-    MT_F_LIST("B", b, n_states, mt_matrix_row, matrix_record, "Rows of B."),
-    MT_F_LIST("C", c, n_outputs, mt_matrix_row, matrix_record, "Rows of C in y = C x + D u."),
-    MT_F_LIST("D", d, n_outputs, mt_matrix_row, matrix_record, "Rows of D."),
+              "Rows of A in x' = A x + B u, in SI."),
+    MT_F_LIST("B", b, n_states, mt_matrix_row, matrix_record, "Rows of B, in SI."),
+    MT_F_LIST("C", c, n_outputs, mt_matrix_row, matrix_record, "Rows of C in y = C x + D u, in SI."),
+    MT_F_LIST("D", d, n_outputs, mt_matrix_row, matrix_record, "Rows of D, in SI."),
     MT_F_FLAG("viscous_for_loss_factors", viscous_for_loss_factors,
               "Loss factors stand as the viscous damping that takes as much energy from each "
               "mode at its own frequency; a loss factor itself has no state space."),
     MT_F_NUMBER("from_hz", from_hz, "Lowest frequency at which it was compared."),
     MT_F_NUMBER("to_hz", to_hz, "Highest frequency at which it was compared."),
     MT_F_COUNT("compared", compared, 0,
-               "Number of these frequencies, in equal ratios; where an undamped mode resonates "
-               "there is nothing to compare."),
-    MT_F_NUMBER_OR_NULL(
+               "Number of these frequencies, in equal ratios; those at which an undamped mode "
+               "resonates in all responses do not count."),
+    MT_F_NUMBER(
         "largest_difference_percent", largest_difference_percent,
         "Largest difference there from the response of all modes, in percent of the response's "
-        "magnitude, or of its median over these frequencies where that is more; null: nothing "
-        "was compared."),
+        "magnitude, or of its median over these frequencies where that is more."),
 };
 const mt_record mt_state_space_record =
     MT_F_RECORD_OF(state_space_fields, "state_space",
@@ -955,7 +954,7 @@ static double difference_of(int n, const double *size, const double *off, double
             work[kept++] = size[i];
         }
     }
-    double most = kept == 0 ? nan("") : 0.0;
+    double most = 0.0;
     if (kept > 0) {
         qsort(work, (size_t)kept, sizeof *work, by_size);
     }
@@ -986,12 +985,15 @@ static mt_status compare(mt_response *r, const mt_state_space *s, double from, d
         const mt_sample sample = {.h = want};
         MT_TRY(mt_transfer_at(&r->direct, w, &sample, &r->mem, err));
         MT_TRY(mt_state_space_at(s, w, have, &r->mem, err));
+        bool any = false;
         for (size_t p = 0; p < pairs; p++) {
-            size[i + (p * COMPARED)] = isfinite(creal(want[p])) ? cabs(want[p]) : HUGE_VAL;
+            const bool finite = isfinite(creal(want[p]));
+            size[i + (p * COMPARED)] = finite ? cabs(want[p]) : HUGE_VAL;
             off[i + (p * COMPARED)] = cabs(want[p] - have[p]);
+            any = any || finite;
         }
+        out->compared += any ? 1 : 0;
     }
-    out->compared = COMPARED;
     out->largest_difference_percent = 0.0;
     for (size_t p = 0; p < pairs; p++) {
         const double part =

@@ -292,7 +292,8 @@ static const mt_field joint_fields[] = {
         "Its motion per motion of the driven joint, the first of several, in rad or m per rad "
         "or m: the exact slope."),
     MT_F_NUMBERS("ratios", ratios, n_ratios,
-                 "With several --drive: the same per motion of each, the others held.",
+                 "With several --drive: the same per motion of each, the others held, in rad or m per "
+                 "rad or m.",
                  MT_F_WHEN(several)),
 };
 static const mt_record joint_record =

@@ -1253,6 +1253,12 @@ static mt_status refuse_not_converged(mt_newton_work *w, const mt_placement *at,
     }
     MT_TRY(newton_linearise(w, at, mem, &solver, err));
     char where[WHERE_SIZE];
+    if (!isfinite(w->residual)) {
+        return mt_fail(err, MT_E_EQUILIBRIUM,
+                       "no equilibrium found after %d iterations: the forces at work grow beyond "
+                       "all numbers",
+                       stage->iterations);
+    }
     mt_eliminate_project(&solver.e, w->g, w->reduced);
     mt_name_motion(w->sys, &solver.e, w->reduced, where, sizeof where);
     return mt_fail(err, MT_E_EQUILIBRIUM,

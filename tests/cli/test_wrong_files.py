@@ -93,6 +93,7 @@ WRONG = {
     "proof_s": [(set_to(-1), "error", "from 0 to 1e\\+06")],
     "target_hz": ASKED, "at_least_hz": ASKED, "at_most_hz": ASKED, "frequency_hz": POSITIVE,
     "at_least": POSITIVE, "at_most": POSITIVE, "target": POSITIVE, "at_least_percent": POSITIVE,
+    ("goal_apart", "modes"): [(set_to([1]), "error", "at least two modes")],
     ("goal_mac", "at_least"): SHARE, ("goal_damping", "at_least"): SHARE, ("goal_damping", "at_most"): SHARE, ("goal_damping", "target"): SHARE,
     "at_least_percent": PERCENT, "at_most_percent": PERCENT,
     ("goal_limit", "at_least"): [(beyond("at_most", 1), "error", "is not above")],
@@ -144,7 +145,7 @@ WRONG = {
 }
 WRONG.update({(s, m): POSITIVE for s in ("section",) for m in ("width_m", "height_m", "diameter_m", "outer_diameter_m")})
 WRONG["section", "inner_diameter_m"] = NEGATIVE
-COUNTS = {"seed", "starts", "max_evaluations", "max_modal_solutions", "recommendations", "mode", "reference_mode", "goal", "count", "blades", "teeth", "sidebands", "cluster",
+COUNTS = {"seed", "starts", "max_evaluations", "max_modal_solutions", "recommendations", "mode", "up_to_mode", "reference_mode", "goal", "count", "blades", "teeth", "sidebands", "cluster",
           "dataset", ("blades", "value"), ("mode", "index"), ("link", "elements")}
 
 

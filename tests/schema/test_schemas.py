@@ -90,8 +90,11 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         names = []
         for i, (path, kind, _, mutant) in enumerate(jobs):
-            if kind in ("study", "profile"):  # files are named relative to these
+            if kind in ("study", "profile", "model"):  # files are named relative to these
                 mutant = copy.deepcopy(mutant)
+                for holder in mutant["include"] if isinstance(mutant.get("include"), list) else []:
+                    if isinstance(holder, dict) and isinstance(holder.get("file"), str):
+                        holder["file"] = str((path.parent / holder["file"]).resolve())
                 if isinstance(mutant.get("aircraft"), str):
                     mutant["aircraft"] = str((path.parent / mutant["aircraft"]).resolve())
             if kind == "study":
@@ -102,10 +105,10 @@ def main():
                 for goal in mutant["goals"] if isinstance(mutant.get("goals"), list) else []:
                     if isinstance(goal, dict) and isinstance(goal.get("profile"), str) and (path.parent / goal["profile"]).is_file():
                         goal["profile"] = str((path.parent / goal["profile"]).resolve())
-                measurements = mutant.get("measurements")
-                for holder in measurements.values() if isinstance(measurements, dict) else []:
-                    if isinstance(holder, dict) and isinstance(holder.get("file"), str):
-                        holder["file"] = str((path.parent / holder["file"]).resolve())
+                for tables in (mutant.get("measurements"), mutant.get("catalogues")):
+                    for holder in tables.values() if isinstance(tables, dict) else []:
+                        if isinstance(holder, dict) and isinstance(holder.get("file"), str):
+                            holder["file"] = str((path.parent / holder["file"]).resolve())
             name = Path(folder, f"{i}.json")
             name.write_text(json.dumps(mutant), encoding="utf-8")
             names.append(f"{kind} {name}\n")
