@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Copies of items, and sub-assemblies, written out. A copy stands at x' = R x + t, R a rotation
- * or, mirrored, a reflection; the same R turns_by_angle what has a direction:
+ * or, mirrored, a reflection; the same R turns what has a direction:
  *
  *     vector (force, direction of sliding)   a' = R a
  *     axis of turning                        a' = det(R) R a   (angles keep their signs)
@@ -63,6 +63,8 @@ static const struct {
     {"inertia_kg_m2", INERTIA},
     {"axes", AXES},
     {"compliance", COMPLIANCE},
+    {"stiffness_n_per_m", NUMBER},
+    {"damping_n_s_per_m", NUMBER},
     {"stiffness_matrix", MATRIX},
     {"free_angle_rad", SENSE},
     {"preload_n_m", SENSE},
@@ -898,7 +900,7 @@ static void put_member(const mt_copy *c, mt_addr addr, const mt_key *key, mt_spa
     case NOT_KNOWN:
         if (!c->parallel) {
             mt_diag_error(mt_json_diags(c->m->docs[c->doc_index]), addr,
-                          "\"%s\" cannot be copied turn_vector or mirrored", name);
+                          "\"%s\" cannot be copied turned or mirrored", name);
         }
         put_numbers(c, name, addr);
         break;

@@ -8,7 +8,7 @@
 static const mt_key POLAR[] = {
     MT_M_JUST(
         "axis", LIST, false, AXIS,
-        "Three dimensions: direction of the axis that copies are turn_vector about, three "
+        "Three dimensions: direction of the axis that copies are turned about, three "
         "plain numbers. In two dimensions it is out of the plane.",
         .schema = MT_DIRECTION),
     MT_M_JUST("about", TEXT_OR_LIST, false, POINT,

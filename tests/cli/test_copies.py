@@ -39,6 +39,20 @@ class Copies(CliTest):
         for a, b in zip(self.frequencies(self.write("pump.json", json.dumps(made))), wanted):
             self.assertAlmostEqual(a / b, 1, delta=1e-12)
 
+    def test_joints_that_yield_are_turned_and_mirrored(self):
+        bodies = [{"name": name, "mass_kg": mass, "inertia_kg_m2": [0.02, 0.03, 0.04], "centre": centre} for name, mass, centre in (("arm", 3, [0.3, 0.1, 0.2]), ("tip", 1, [0.6, 0.2, 0.1]))]
+        yields = {"stiffness_n_per_m": [2e6, "s", 4e6], "stiffness_n_m_per_rad": ["rigid", 3e4, "rigid"], "damping_n_s_per_m": [10, 20, 30]}
+        joints = [{"name": "hinge", "type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0, 0], "axis": [0, 1, 0.4], "compliance": {**yields, "axes": {"x": [1, 0.5, 0]}}},
+                  {"name": "clamp", "type": "fixed", "bodies": ["arm", "tip"], "at": [0.5, 0, 0], "compliance": yields}]
+        alone = {"format": "modetune-model/1", "dimension": 3, "parameters": {"s": 3e6}, "bodies": bodies, "joints": joints,
+                 "springs": [{"name": "coil", "type": "torsion", "joint": "hinge", "stiffness_n_m_per_rad": 500}]}
+        wanted = [f for f in self.frequencies(self.write("alone.json", json.dumps(alone))) for _ in "ab"]
+        for motion in ({"mirror": {"normal": [1, 2, 0]}}, {"count": 2, "polar": {"axis": [1, 0, 2], "angle_rad": 0.7}}):
+            found = self.frequencies(self.write("two.json", json.dumps({**alone, "repeat": [{"of": ["*"], **motion}]})))
+            self.assertEqual(len(wanted), len(found))
+            for a, b in zip(found, wanted):
+                self.assertAlmostEqual(a / b, 1, delta=1e-11)
+
     def test_slopes_of_an_angle_between_copies(self):
         path = self.write("pump.json", json.dumps(PUMP))
         rows = self.expect(0, "sensitivity", path, "--parameters", "turn", "--format", "csv").stdout.splitlines()
