@@ -85,11 +85,11 @@ void mt_loaded_model_warn_overridden(const mt_loaded_model *s, int c)
 {
     const mt_configuration *const conf = &s->model->configurations[c];
     for (int k = 0; k < conf->n_overrides; k++) {
-        for (int i = 0; i < s->n_inputs; i++) {
-            if (conf->overrides[k].parameter == s->inputs[i]) {
+        for (int i = 0; i < s->n_set; i++) {
+            if (conf->overrides[k].parameter == s->set[i]) {
                 mt_terminal_warning("configuration \"%s\" has its own value of \"%s\": --set "
                                     "changes nothing there",
-                                    conf->name.s, s->model->parameters[s->inputs[i]].name.s);
+                                    conf->name.s, s->model->parameters[s->set[i]].name.s);
             }
         }
     }

@@ -37,14 +37,60 @@ static mt_status find_configuration(mt_loaded_model *s, const char *name, mt_err
     return refuse_unknown_name("configuration", name, names, n, err);
 }
 
+/* True where the condition of an if() depends on the parameter: nothing has a slope by it. */
+static bool decides(const mt_model *model, int parameter, mt_arena *mem)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    mt_numbers numbers;
+    const mt_status rc = mt_numbers_new(model, MT_ABSENT, 1, &parameter, model->n_nums,
+                                        model->nums, mem, &numbers, NULL);
+    mt_arena_rewind(mem, mark);
+    return rc == MT_E_INPUT;
+}
+
+static bool has_condition(const mt_model *model)
+{
+    bool any = false;
+    for (int i = 0; i < model->n_nums; i++) {
+        const mt_expr *const e = &model->nums[i].expr;
+        for (int k = 0; k < e->length && !any; k++) {
+            any = e->code[k].op == MT_OP_IF;
+        }
+    }
+    return any;
+}
+
+/* The model as if its file gave the parameter this value: what decides cases is no input. */
+static mt_status write_setting(mt_loaded_model *s, mt_model *changed, mt_setting set,
+                               mt_err *err)
+{
+    if (s->model != changed) {
+        *changed = *s->model;
+        changed->nums = mt_arena_alloc(&s->mem, (size_t)changed->n_nums, sizeof *changed->nums);
+        MT_TRY(mt_arena_check(&s->mem, err));
+        memcpy(changed->nums, s->model->nums, (size_t)changed->n_nums * sizeof *changed->nums);
+        s->model = changed;
+    }
+    const mt_num value = changed->parameters[set.parameter].value;
+    return mt_expr_number(set.value, &s->mem, &changed->nums[value].expr, err);
+}
+
 static mt_status take_settings(mt_loaded_model *s, int n, const char *const *sets, mt_err *err)
 {
     mt_setting *settings = NULL;
-    const mt_status rc =
-        mt_model_read_settings(s->model, s->original, n, sets, &s->mem, &settings, err);
+    mt_model *const changed = mt_arena_alloc(&s->mem, 1, sizeof *changed);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    const mt_model *const model = s->model;
+    mt_status rc = mt_model_read_settings(model, s->original, n, sets, &s->mem, &settings, err);
+    const bool conditions = n > 0 && has_condition(model);
     for (int i = 0; rc == MT_OK && i < n; i++) {
-        s->inputs[s->n_inputs] = settings[i].parameter;
-        s->at[s->n_inputs++] = settings[i].value;
+        s->set[s->n_set++] = settings[i].parameter;
+        if (conditions && decides(model, settings[i].parameter, &s->mem)) {
+            rc = write_setting(s, changed, settings[i], err);
+        } else {
+            s->inputs[s->n_inputs] = settings[i].parameter;
+            s->at[s->n_inputs++] = settings[i].value;
+        }
     }
     return rc == MT_OK ? rc : mt_err_in(err, rc, "--set");
 }
@@ -56,6 +102,7 @@ mt_status mt_loaded_model_choose(mt_loaded_model *s, const char *configuration, 
     const int nc = s->model->n_configurations;
     s->original = mt_arena_f64(&s->mem, np, 1);
     s->values = mt_arena_f64(&s->mem, np, 1);
+    s->set = mt_arena_int(&s->mem, np);
     s->inputs = mt_arena_int(&s->mem, np);
     s->at = mt_arena_f64(&s->mem, np, 1);
     s->configurations = mt_arena_int(&s->mem, (size_t)nc);
@@ -73,7 +120,7 @@ mt_status mt_loaded_model_choose(mt_loaded_model *s, const char *configuration, 
                                            &s->mem, s->values, err)
                      : rc;
     /* what --set makes of the model must be a mechanism still */
-    for (int i = 0; rc == MT_OK && i < s->n_configurations && s->n_inputs > 0; i++) {
+    for (int i = 0; rc == MT_OK && i < s->n_configurations && s->n_set > 0; i++) {
         rc = mt_model_admit(s->model, s->configurations[i], s->n_inputs, s->inputs, s->at,
                             &s->mem, err);
         rc = mt_err_in(err, rc, "--set");
@@ -125,29 +172,6 @@ static mt_status add_parameter(const mt_model *model, const char *option, const 
     }
     out[(*n)++] = found;
     return MT_OK;
-}
-
-/* True where the condition of an if() depends on the parameter: nothing has a slope by it. */
-static bool decides(const mt_model *model, int parameter, mt_arena *mem)
-{
-    const mt_arena_mark mark = mt_arena_get_mark(mem);
-    mt_numbers numbers;
-    const mt_status rc = mt_numbers_new(model, MT_ABSENT, 1, &parameter, model->n_nums,
-                                        model->nums, mem, &numbers, NULL);
-    mt_arena_rewind(mem, mark);
-    return rc == MT_E_INPUT;
-}
-
-static bool has_condition(const mt_model *model)
-{
-    bool any = false;
-    for (int i = 0; i < model->n_nums; i++) {
-        const mt_expr *const e = &model->nums[i].expr;
-        for (int k = 0; k < e->length && !any; k++) {
-            any = e->code[k].op == MT_OP_IF;
-        }
-    }
-    return any;
 }
 
 mt_status mt_loaded_model_parameters(const mt_loaded_model *s, const char *option,
@@ -238,7 +262,7 @@ const char *mt_loaded_model_configuration(const mt_loaded_model *s, int c)
 
 const char *mt_mode_name(const mt_loaded_model *s, int c, int index)
 {
-    for (int i = 0; i < s->model->n_modes && s->n_inputs == 0; i++) {
+    for (int i = 0; i < s->model->n_modes && s->n_set == 0; i++) {
         const mt_named_mode *const m = &s->model->modes[i];
         if (m->configuration == c && m->index == index && index > 0) {
             return m->name.s;

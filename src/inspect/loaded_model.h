@@ -12,10 +12,13 @@
 /* A model with values of its parameters, and the configurations to analyse. */
 typedef struct mt_loaded_model {
     const mt_model *model;
-    mt_model *own;     /* the same where it is owned, else NULL */
+    mt_model *own;     /* the same as read where it is owned, else NULL */
     const mt_run *run; /* the run of analyses of the model (base/run.h); NULL: none */
     mt_arena mem;
     const char *path;
+    int n_set;
+    int *set; /* parameters that --set gives values; those that decide cases are no inputs: the
+               * model has their values */
     int n_inputs;
     int *inputs;      /* parameters */
     double *at;       /* their values */

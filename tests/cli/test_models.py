@@ -20,7 +20,22 @@ STANDING_STUDY = '''{"format": "modetune-study/1", "model": "../problems/standin
 "goals": [{"type": "frequency", "mode": 1, "target_hz": 0.2}]}'''
 
 
+CASES = '''{"format": "modetune-model/1", "dimension": 2, "parameters": {"n": 3, "q": 1, "k": 4},
+"bodies": [{"name": "rod", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 0]}], "modes": {"swing": {"configuration": "two", "index": 1}},
+"joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "rod"], "at": [0, 0]}],
+"springs": [{"name": "k", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": "if(n*q >= 4, 9, k)"}], "configurations": {"two": {}, "own": {"parameters": {"n": 1}}}}'''
+
+
 class Modes(CliTest):
+    def test_a_value_of_set_decides_cases(self):
+        path = self.write("cases.json", CASES)
+        for sets, omega in ((["k=16"], 4), (["n=4"], 3), (["q=2"], 3), (["q=0.5", "n=8", "k=25"], 3), (["k=25", "n=2"], 5)):
+            got = self.json_of("modes", path, "-c", "two", *(a for s in sets for a in ("--set", s)))
+            self.assertAlmostEqual(2 * math.pi * got["modes"][0]["frequency_hz"], omega, delta=TOL)
+            self.assertIsNone(got["modes"][0]["name"])
+        self.assertIn('configuration "own" has its own value of "n"', self.expect(0, "modes", path, "--set", "n=4").stderr)
+        self.assertIn("the condition of an if() depends on what varies here", self.expect(2, "sensitivity", path, "--parameters", "n").stderr)
+
     def test_json_of_one_configuration_is_an_object(self):
         got = self.json_of("modes", self.model, "-c", "held")
         self.assertEqual(got["configuration"], "held")
