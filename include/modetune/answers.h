@@ -43,11 +43,16 @@ typedef struct mt_modes_options {
     const char *configuration; /* NULL: all */
     const char *const *sets;   /* [n_sets] "NAME=VALUE" */
     const double *about_m; /* [3] that rotations of the ground are about; NULL: the origin */
+    const char
+        *energy_about;       /* a point of the model that energies by direction are about; NULL:
+                               * each body's centre */
+    const char *energy_axes; /* "global", "principal", "torque_roll_x", ...; NULL: global */
     int n_sets;
     int count;          /* vibration modes, the lowest; 0: 20, INT_MAX: all */
     int shapes;         /* 1: with their shapes */
     int damped;         /* 1: and the modes with damping */
     int effective_mass; /* 1: and participation factors and effective masses */
+    int energy;         /* 1: and who has the energy of each mode */
 } mt_modes_options;
 
 /**
@@ -131,15 +136,19 @@ typedef struct mt_sweep_options {
     const char *const *sets;   /* [n_sets] "NAME=VALUE" */
     const char *const *drives; /* [n_drives] "JOINT=FROM:TO:N", numbers in the model's unit or
                                 * expressions */
-    const char *hold;          /* the spring that is trimmed to hold the joint; NULL: a lock */
+    const char *const *holds;  /* [n_holds] springs that are trimmed to hold their joints, the
+                                * others are locked: "SPRING", of one of several joints
+                                * "JOINT=SPRING" */
     int n_sets;
-    int n_drives;    /* 1 */
+    int n_drives; /* several joints go their ways together, in as many steps */
+    int n_holds;
+    int grid;        /* 1: each position of one joint with each of the others */
     int frequencies; /* 1: with natural frequencies */
     int count;       /* vibration modes, the lowest; 0: 6 */
 } mt_sweep_options;
 
 /**
- * Positions along the range of a joint, as `modetune sweep`. The parameters as of
+ * Positions along the ranges of joints, as `modetune sweep`. The parameters as of
  * mt_model_modes. A position that is not reached has its reason as "error". O(N n^3).
  */
 MT_API mt_status mt_model_sweep(const mt_model *model, const mt_sweep_options *options,

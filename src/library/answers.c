@@ -116,7 +116,9 @@ mt_status mt_model_modes(const mt_model *model, const mt_modes_options *options,
     mt_modes_question question = {.count = own.count > 0 ? own.count : MT_MODES_DEFAULT,
                                   .shapes = own.shapes != 0,
                                   .damped = own.damped != 0,
-                                  .effective_mass = own.effective_mass != 0};
+                                  .effective_mass = own.effective_mass != 0,
+                                  .energy = own.energy != 0,
+                                  .energies = {own.energy_about, own.energy_axes}};
     for (int k = 0; own.about_m != NULL && k < MT_COUNT(question.about_m); k++) {
         question.about_m[k] = own.about_m[k];
     }
@@ -270,9 +272,8 @@ static mt_status put_sweep(const void *question, mt_loaded_model *s, int c, mt_j
 static mt_status check_sweep(const mt_sweep_options *opt, mt_err *err)
 {
     MT_TRY(check_texts("drives", opt->n_drives, opt->drives, err));
-    MT_TRY(check_count("count", opt->count, err));
-    return opt->n_drives <= 1 ? MT_OK
-                              : mt_fail(err, MT_E_USAGE, "n_drives of the options is above 1");
+    MT_TRY(check_texts("holds", opt->n_holds, opt->holds, err));
+    return check_count("count", opt->count, err);
 }
 
 mt_status mt_model_sweep(const mt_model *model, const mt_sweep_options *options, char **json,
@@ -291,8 +292,9 @@ mt_status mt_model_sweep(const mt_model *model, const mt_sweep_options *options,
     mt_status rc = open_model(model, own.configuration, own.n_sets, own.sets, &s, err);
     const mt_sweep_texts texts = {.n_drives = own.n_drives,
                                   .drives = own.drives,
-                                  .n_holds = own.hold == NULL ? 0 : 1,
-                                  .holds = &own.hold};
+                                  .n_holds = own.n_holds,
+                                  .holds = own.holds,
+                                  .grid = own.grid != 0};
     rc = rc == MT_OK ? mt_sweep_question_read(&s, &texts, &question, err) : rc;
     if (own.frequencies != 0) {
         question.modes = own.count > 0 ? own.count : MT_SWEEP_MODES;

@@ -57,6 +57,7 @@ def questions(path, held):
     yield "modes", {"of": one, "shapes": True, "count": 3}, [path, *named, "--shapes", "--count", "3"]
     yield "modes", {"damped": True, "count": "all"}, [path, "--damped", "--count", "all"]
     yield "modes", {"effective_mass": True, "about_m": (0.1, 0.2, 0.3)}, [path, "--effective-mass", "--about", "0.1,0.2,0.3"]
+    yield "modes", {"energy": True, "energy_axes": "principal"}, [path, "--energy", "--axes", "principal"]
     yield "sensitivity", {"count": 2}, [path, "--count", "2"]
     for parameter in parameters[:1]:
         setting = {"set": {parameter: f"1.01*{parameter}"}}
@@ -103,6 +104,18 @@ class Answers(unittest.TestCase):
         modes = modetune.Model(held).modes("installed", set={"k_servo": 2000})
         self.assertEqual(modes["modes"], json.loads(printed("modes", path, "-c", "installed", "--set", "k_servo=2000"))["modes"])
         self.assertEqual(modetune.Model(held).sweep("pivot=0:0.01:2", "installed")["points"][1]["position_rad"], 0.01)
+
+    def test_several_joints_and_energies_about_a_point(self):
+        arm = SOURCE / "tests/models/driven_arm.json"
+        drives = ["shoulder=0:0.4:2", "elbow=0.5:0.9:2"]
+        for arguments, line in (({}, ()), ({"grid": True, "hold": ["elbow=elbow_servo"], "frequencies": True}, ("--grid", "--hold", "elbow=elbow_servo", "--frequencies"))):
+            text = answered(modetune.Model(arm), "sweep", {"of": (drives, "drawn"), **arguments})
+            self.assertEqual(text, printed("sweep", arm, "-c", "drawn", "--drive", drives[0], "--drive", drives[1], *line))
+            self.assertEqual(len(json.loads(text)["points"]), 4 if arguments else 2)
+        path = SOURCE / "problems/pump_on_mounts.json"
+        text = answered(modetune.Model(path), "modes", {"energy": True, "energy_about": "front_left"})
+        self.assertEqual(text, printed("modes", path, "--energy", "--energy-about", "front_left"))
+        self.assertIsNotNone(text)
 
     def test_what_is_wrong_is_told(self):
         model = modetune.Model(SOURCE / "problems/stick.json")

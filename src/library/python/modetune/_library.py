@@ -80,8 +80,9 @@ TEXTS = POINTER(c_char_p)
 class ModesOptions(Structure):
     _fields_ = [
         ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS),
-        ("about_m", POINTER(c_double)), ("n_sets", c_int), ("count", c_int), ("shapes", c_int),
-        ("damped", c_int), ("effective_mass", c_int),
+        ("about_m", POINTER(c_double)), ("energy_about", c_char_p), ("energy_axes", c_char_p),
+        ("n_sets", c_int), ("count", c_int), ("shapes", c_int), ("damped", c_int),
+        ("effective_mass", c_int), ("energy", c_int),
     ]
 
 
@@ -112,8 +113,8 @@ class ResponseOptions(Structure):
 class SweepOptions(Structure):
     _fields_ = [
         ("size", c_size_t), ("configuration", c_char_p), ("sets", TEXTS), ("drives", TEXTS),
-        ("hold", c_char_p), ("n_sets", c_int), ("n_drives", c_int), ("frequencies", c_int),
-        ("count", c_int),
+        ("holds", TEXTS), ("n_sets", c_int), ("n_drives", c_int), ("n_holds", c_int),
+        ("grid", c_int), ("frequencies", c_int), ("count", c_int),
     ]
 
 

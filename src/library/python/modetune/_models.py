@@ -126,14 +126,19 @@ class Model:
               set: Optional[Mapping[str, Value]] = None,  # noqa: A002
               count: Union[int, str, None] = None, shapes: bool = False,
               damped: bool = False, effective_mass: bool = False,
-              about_m: Sequence[float] = (0.0, 0.0, 0.0)) -> CommandModes:
-        """Natural modes, as `modetune modes`; with `shapes`, modes with damping, and effective
-        masses, those of rotations about the point about_m.
+              about_m: Sequence[float] = (0.0, 0.0, 0.0), energy: bool = False,
+              energy_about: Optional[str] = None,
+              energy_axes: Optional[str] = None) -> CommandModes:
+        """Natural modes, as `modetune modes`; with `shapes`, modes with damping, effective
+        masses, those of rotations about the point about_m, and who has the `energy` of each
+        mode, about a point of the model and along these axes ("principal").
         """
         about = (c_double * 3)(*about_m)
         options = ModesOptions(configuration=_optional(configuration), count=_count(count),
                                shapes=shapes, damped=damped, effective_mass=effective_mass,
-                               about_m=about)
+                               about_m=about, energy=energy,
+                               energy_about=_optional(energy_about),
+                               energy_axes=_optional(energy_axes))
         _common(options, set)
         return self._ask("modes", options)
 
@@ -198,16 +203,18 @@ class Model:
                          listed=read.diagnostics))
             return self._ask("response", options)
 
-    def sweep(self, drive: str, configuration: Optional[str] = None, *,
+    def sweep(self, drive: Union[str, Sequence[str]], configuration: Optional[str] = None, *,
               set: Optional[Mapping[str, Value]] = None,  # noqa: A002
-              hold: Optional[str] = None, frequencies: bool = False,
-              count: Union[int, str, None] = None) -> CommandSweep:
-        """Positions along the range of a joint ("pivot=0:30*deg:4"), as `modetune sweep`;
-        `hold` names the spring that is trimmed instead of a lock.
+              hold: Union[str, Sequence[str], None] = None, grid: bool = False,
+              frequencies: bool = False, count: Union[int, str, None] = None) -> CommandSweep:
+        """Positions along the range of a joint ("pivot=0:30*deg:4"), or of several together,
+        with `grid` each with each, as `modetune sweep`; `hold` names the spring that is trimmed
+        instead of a lock, of one of several joints "pivot=servo".
         """
-        drives = _listed(drive)
+        drives, holds = _listed(drive), _listed(hold)
         options = SweepOptions(configuration=_optional(configuration), drives=_texts(drives),
-                               n_drives=len(drives), hold=_optional(hold),
+                               n_drives=len(drives), holds=_texts(holds),
+                               n_holds=len(holds), grid=grid,
                                frequencies=frequencies, count=_count(count))
         _common(options, set)
         return self._ask("sweep", options)
