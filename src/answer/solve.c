@@ -23,6 +23,7 @@
 #include "describe/certificates.h"
 #include "describe/describe.h"
 #include "describe/describe_search.h"
+#include "problem/configuration.h"
 #include "problem/tolerance_cut.h"
 #include "search/catalogue_search.h"
 #include "search/drive_path.h"
@@ -670,6 +671,16 @@ static mt_status warn_of_search(const answer *a, mt_err *err)
             mt_search_budget(s)));
     }
     MT_TRY(warn_of_missing(a, err));
+    int one = 0;
+    int other = 0;
+    if (mt_drive_positions_unfollowed(a->p, &one, &other)) {
+        MT_TRY(mt_describe_warn(a->result, err,
+                                "nothing is looked at between \"%s\" and \"%s\": a design is "
+                                "followed along one joint, from the first position that is "
+                                "named to others in which that joint alone differs",
+                                mt_configuration_name(a->p, &a->p->views[one]),
+                                mt_configuration_name(a->p, &a->p->views[other])));
+    }
     for (int i = 0; i < a->result->n_recommendations; i++) {
         if (a->found.solutions[i].continuum) {
             MT_TRY(mt_describe_warn(a->result, err,

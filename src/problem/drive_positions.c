@@ -101,12 +101,16 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
 /* True where a value is limited in at least two positions of one drive, so that the limit also
  * applies between them. A target, a weighted goal and one about rest apply at the named
  * positions only. */
-static bool is_limited(const mt_problem *p, const mt_requirement *d)
+static bool can_be_followed(const mt_requirement *d)
 {
     const bool here = d->of.view < 0 || d->of.view == d->view; /* all of it moves */
-    const bool limits = d->ops->value != NULL && d->role != MT_ROLE_RESIDUAL &&
-                        !MT_HAS(d->equals) && d->rest == NULL && here;
-    const int drive_positions = limits && d->view >= 0 ? mt_drive_positions_of(p, d->view) : -1;
+    return d->ops->value != NULL && d->role != MT_ROLE_RESIDUAL && !MT_HAS(d->equals) &&
+           d->rest == NULL && here && d->view >= 0;
+}
+
+static bool is_limited(const mt_problem *p, const mt_requirement *d)
+{
+    const int drive_positions = can_be_followed(d) ? mt_drive_positions_of(p, d->view) : -1;
     for (int i = 0; i < p->n_requirements && drive_positions >= 0; i++) {
         const mt_requirement *const other = &p->requirements[i];
         if (mt_drive_positions_same_limit(other, d) && other->view != d->view &&
@@ -126,6 +130,39 @@ bool mt_drive_positions_limits_first(const mt_problem *p, const mt_requirement *
         }
     }
     return is_limited(p, d);
+}
+
+/* True where both are postures of several joints, and not positions of one of them. */
+static bool is_unfollowed(const mt_problem *p, int a, int b)
+{
+    const int own = mt_drive_positions_of(p, a);
+    return system_of(p, a)->n_drives > 1 && system_of(p, b)->n_drives > 1 && a != b &&
+           (own < 0 || own != mt_drive_positions_of(p, b));
+}
+
+bool mt_drive_positions_unfollowed(const mt_problem *p, int *a, int *b)
+{
+    for (int i = 0; i < p->n_requirements; i++) {
+        for (int k = 0; k < i && can_be_followed(&p->requirements[i]); k++) {
+            *a = p->requirements[k].view;
+            *b = p->requirements[i].view;
+            if (*a >= 0 && is_unfollowed(p, *a, *b) &&
+                mt_drive_positions_same_limit(&p->requirements[k], &p->requirements[i])) {
+                return true;
+            }
+        }
+    }
+    for (int i = 0; i < p->n_avoidances; i++) {
+        for (int k = 0; k < i; k++) {
+            *a = p->avoidances[k].view;
+            *b = p->avoidances[i].view;
+            if (p->avoidances[k].goal_index == p->avoidances[i].goal_index &&
+                is_unfollowed(p, *a, *b)) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 static void find_limited(mt_problem *p)

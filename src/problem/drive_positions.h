@@ -58,6 +58,9 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
 /* True where d limits a value (a frequency, a damping ratio, a MAC, a forced vibration) in
  * several positions of its drive, and is the first among equal limits there. */
 bool mt_drive_positions_limits_first(const mt_problem *p, const mt_requirement *d);
+/* True where a goal names two postures of several joints, *a and *b, between which no drive is
+ * followed: more than one joint moves, or another one than between positions named before. */
+bool mt_drive_positions_unfollowed(const mt_problem *p, int *a, int *b);
 /* Position of the drive at the last solve [rad, m]. */
 double mt_drive_positions_position(const mt_drive_positions *f, const mt_analysis *a);
 /* Index of the drive that a configuration belongs to; -1: none. */

@@ -157,7 +157,7 @@ class Between(unittest.TestCase):
     def answer(self, a, goal, variables, **more):
         study = more | {"format": "modetune-study/1", "model": "model.json", "variables": variables, "goals": goal if isinstance(goal, list) else [goal], "search": {"starts": 3}}
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "model.json").write_text(json.dumps(arm(a)))
+            (Path(folder) / "model.json").write_text(json.dumps(a if "bodies" in a else arm(a)))
             (Path(folder) / "study.json").write_text(json.dumps(study))
             low, high, tone_low, tone_high = a.get("shaken", [1, 2, 1, 2])
             (Path(folder) / "profile.json").write_text(json.dumps({
@@ -271,6 +271,20 @@ class Between(unittest.TestCase):
         self.assertEqual(len(told), 1)
         less = self.answer(a, goal | {"at_most": 0.0004613 * 1.01}, variables)["recommendations"][0]["change"]
         self.assertAlmostEqual(float(told[0][1]) / 100 * design["change"] / (design["change"] - less), 1, delta=0.02)
+
+    def test_postures_between_which_nothing_is_followed_are_named(self):
+        """Two hinged arms, one with a mass on a spring: positions of one hinge are followed, other ways between postures are not."""
+        model = arm({"k0": 4000, "k": 1, "c": 2, "length": 1, "k2": None, "place": [2, 1, 0], "positions": [0]})
+        model["bodies"].append({"name": "fore", "mass_kg": 1, "inertia_kg_m2": [0.1, 0.1, 0.1], "centre": [0, 1, 0]})
+        model["joints"].append({"name": "q", "type": "revolute", "bodies": ["ground", "fore"], "at": [0, 0, 0], "axis": [0, 0, 1]})
+        postures = {"a": (0, 0), "b": (0.3, 0), "c": (0, 0.3), "d": (0.3, 0.3)}
+        model["configurations"] = {name: {"drive": [{"joint": "p", "position_rad": p}, {"joint": "q", "position_rad": q}]} for name, (p, q) in postures.items()}
+        first, clear = {"type": "frequency", "mode": 1, "at_least_hz": 1}, {"type": "avoid", "bands_hz": [[1, 2]]}
+        for goal, named, apart in ((first, "ab", None), (first, "ac", None), (first, "ad", "ad"), (first, "acb", "ab"), (clear, "ac", None), (clear, "abc", "ac")):
+            with self.subTest(goal=goal["type"], named=named):
+                said = self.answer(model, goal | {"configurations": list(named)}, [{"parameter": "k0", "catalogue": [4000, 4001]}])["warnings"]
+                told = [re.match(r'nothing is looked at between "(.)" and "(.)": ', text) for text in said]
+                self.assertEqual(["".join(m.groups()) for m in told if m], [apart] if apart else [])
 
 
 if __name__ == "__main__":
