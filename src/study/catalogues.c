@@ -135,20 +135,31 @@ static char separator_of(const char *line)
     return best;
 }
 
-/* "D [mm]" into name and unit. */
+/* "D [mm]" into name and unit; also "D (mm)", where that is a unit. */
 static mt_name unit_of_header(char *text, mt_addr addr)
 {
-    char *const open = strrchr(text, '[');
-    char *const close = open == NULL ? NULL : strchr(open, ']');
-    if (close == NULL || close[1] != '\0') {
-        return (mt_name){.s = "", .addr = addr};
+    const size_t length = strlen(text);
+    const mt_name none = {.s = "", .addr = addr};
+    const bool square = length > 0 && text[length - 1] == ']';
+    if (!square && (length == 0 || text[length - 1] != ')')) {
+        return none;
     }
-    *close = '\0';
+    char *const open = square ? strrchr(text, '[') : strstr(text, " (");
+    if (open == NULL) {
+        return none;
+    }
+    char *const unit = square ? open + 1 : open + 2;
+    mt_unit_worth worth;
+    text[length - 1] = '\0';
+    if (!square && !mt_unit_read(unit, MT_READ_MASSES, &worth)) {
+        text[length - 1] = ')';
+        return none;
+    }
     *open = '\0';
     for (char *s = open; s > text && s[-1] == ' '; s--) {
         s[-1] = '\0';
     }
-    return (mt_name){.s = open + 1, .addr = addr};
+    return (mt_name){.s = unit, .addr = addr};
 }
 
 /* A number in a field; a comma is a point where it does not separate. */

@@ -325,6 +325,18 @@ class Shown(CliTest):
                 self.assertEqual((got["lower"], got["upper"]), (values[0] * 254 / 10000, values[-1] * 254 / 10000))
                 self.assertEqual(got["recommended"], min(x for x in values if x > 4.1) * 254 / 10000)
 
+    def test_columns_of_parts_have_their_units_in_brackets_of_either_kind(self):
+        for head, inches in (("d [mm]", 1 / 25.4), ("d (mm)", 1 / 25.4), ("d(mm)", 1), ("d (outer)", 1), ("d", 1)):
+            self.write("studies/rods.csv", f"{head};name\n105;A\n150;B\n")
+            self.write("studies/rods.json", json.dumps(altered(
+                ASK, published=None, goals=[{"type": "limit", "expression": "d", "at_least": f"{120 * inches}*inch"}], objective={"minimise": "d"},
+                catalogues={"rod": {"file": "rods.csv"}}, variables=[{"catalogue": "rod", "parameters": ["d"]}])))
+            self.expect(0, "run", "studies/rods.json", "-o", "out")
+            got = json.loads((self.folder / "out/rods/result.json").read_text())["recommendations"][0]["parameters"][0]
+            with self.subTest(head=head):
+                self.assertAlmostEqual(got["recommended"] / (150 * inches * 0.0254), 1, delta=DIGITS)
+                self.assertEqual(got["part"], "B")
+
     def test_a_trade_study_and_what_would_let_a_design_exist(self):
         study = altered(ASK, published=None, trade={"vary": [{"variable": "d", "bound": "upper", "values": [5, 7]},
                                                              {"parameter": "w", "values": {"from": 1, "to": 2, "count": 2}}]})
