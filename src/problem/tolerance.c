@@ -162,8 +162,9 @@ static mt_status check_requirement(const mt_requirement *d, mt_err *err)
     if (d->quantity == MT_QUANTITY_OTHER || d->quantity == MT_QUANTITY_FREQUENCIES) {
         return mt_fail(err, MT_E_INPUT,
                        "/goals/%d: a goal of type \"%s\" is not judged over "
-                       "\"tolerance_percent\": give it a weight, or the variables no tolerance",
-                       d->goal_index, mt_goal_kind_of(d->goal->type)->name);
+                       "\"tolerance_percent\": give %sthe variables no tolerance",
+                       d->goal_index, mt_goal_kind_of(d->goal->type)->name,
+                       MT_HAS(d->equals) ? "it a weight, or " : "");
     }
     return d->mode > 0 ? MT_OK
                        : mt_fail(err, MT_E_INPUT,

@@ -235,7 +235,10 @@ static void robust__a_mac_is_refused(mt_test *t)
     s.study->goals[0].type = MT_GOAL_MAC;
     s.study->goals[0].at_least = 0.9;
     s.study->goals[0].reference_name.s = NULL;
-    refused(t, s.study, "a goal of type \"mac\" is not judged over \"tolerance_percent\"");
+    refused(t, s.study,
+            "a goal of type \"mac\" is not judged over \"tolerance_percent\": give the "
+            "variables no "
+            "tolerance");
     six_end(&s);
 }
 
