@@ -276,7 +276,7 @@ mt_status mt_port_at_rest(const mt_system *sys, const char *text, mt_arena *mem,
 {
     const char *const colon = strchr(text, ':');
     if (colon != NULL) {
-        return mt_fail(err, MT_E_USAGE, "\"%s\": at rest nothing has a %s", text, colon + 1);
+        return mt_fail(err, MT_E_USAGE, "\"%s\": at rest there is no %s", text, colon + 1);
     }
     if (begins(text, WITH_FORCE[1])) {
         return mt_fail(err, MT_E_USAGE, "\"%s\": a damper carries nothing at rest", text);

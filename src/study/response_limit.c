@@ -533,16 +533,25 @@ static bool begins(const char *text, const char *with)
     return strncmp(text, with, strlen(with)) == 0;
 }
 
-/* Unit of the force of "spring.NAME" or a damper, by its type; for one of joints, whose
- * rotation or sliding is not known here, and otherwise: NULL. */
-static const char *force_unit(const mt_model *m, const char *name, bool damper)
+/* True where the port is `name`, or a component of it: "NAME.rx". */
+static bool is_of(const char *port, const char *name, bool component)
+{
+    const size_t length = strlen(name);
+    return strncmp(port, name, length) == 0 &&
+           (component ? port[length] == '.' && strchr(port + length + 1, '.') == NULL
+                      : port[length] == '\0');
+}
+
+/* Unit of the force of "spring.NAME" or a damper, by its type, of a bushing by its component;
+ * otherwise: NULL. */
+static const char *force_unit(const mt_model *m, const char *port, bool damper)
 {
     for (int i = 0; i < m->n_springs; i++) {
         const mt_spring *const s = &m->springs[i];
-        if (s->damper == damper && s->name.s != NULL && strcmp(s->name.s, name) == 0) {
-            return s->type == MT_SPRING_TORSION   ? "N m"
-                   : s->type == MT_SPRING_BUSHING ? NULL
-                                                  : "N";
+        const bool bushing = s->type == MT_SPRING_BUSHING;
+        if (s->damper == damper && s->name.s != NULL && is_of(port, s->name.s, bushing)) {
+            const bool moment = bushing ? turns(port) : s->type == MT_SPRING_TORSION;
+            return moment ? "N m" : "N";
         }
     }
     return NULL;
@@ -556,7 +565,7 @@ static const char *output_unit(const mt_model *m, const char *port)
             return force_unit(m, port + strlen(springs[k]), k == 1);
         }
     }
-    return begins(port, "joint.") ? "N" : motion_unit(port, 0);
+    return begins(port, "joint.") ? (turns(port) ? "N m" : "N") : motion_unit(port, 0);
 }
 
 static const char *input_unit(const char *port)

@@ -290,6 +290,10 @@ class Goals(Program):
         self.assertGreater(len(goals), 35)
         original = self.goals(model, goals, [{"parameter": n, "lower": 0.9 * model["parameters"][n], "upper": 1.1 * model["parameters"][n]} for n in names])
         size = max(abs(v) for v in told.values())
+        for g, asked in zip(original, goals):
+            turns, moves = asked["output"].rsplit(".", 1)[1].startswith("r"), asked["output"][:3] in ("tip", "hea")
+            self.assertEqual(g["unit"], (("m", "rad") if moves else ("N", "N m"))[turns], asked)
+            self.assertIn((("displacement", "rotation") if moves else ("force", "moment"))[turns], g["quantity"])
         for n in names:
             h = 1e-4 * model["parameters"][n]
             up, down = (self.rest(model, "--set", f"{n}={model['parameters'][n] + s * h!r}") for s in (1, -1))
@@ -318,7 +322,7 @@ class Goals(Program):
         self.assertIn('/goals/0/output: no output is called "joint.rail.rx"', self.refused(still, {"output": "joint.rail.rx"}))
         self.assertIn('no output is called "joint.rail"', self.refused(still, {"output": "joint.rail"}))
         self.assertIn("nothing holds it", self.refused(still, {"output": "joint.rail.hold"}))
-        self.assertIn("at rest nothing has a velocity", self.refused(still, {"output": "tip.x:velocity"}))
+        self.assertIn("at rest there is no velocity", self.refused(still, {"output": "tip.x:velocity"}))
         self.assertIn("the displacement of a sensor", self.refused(still, {"output": "spring.s", "input": "tip.y"}))
         self.assertIn("a motion of the ground", self.refused(still, {"output": "tip.y", "input": "base.y"}))
         two = hung()
