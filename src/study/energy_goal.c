@@ -154,23 +154,47 @@ static void check_presence(mt_study_check *c, const mt_goal *goal, const mt_pres
     }
 }
 
-/* The bodies and then the links of the model, or its springs and then its links, without the
- * dampers, by name. */
+/* The bodies and then the links of the model, or its springs, links and then the bearings of
+ * joints that yield, "NAME.bearing", by name. */
 static int list_names(mt_study_check *c, bool springs, mt_name **out)
 {
     const mt_model *const m = c->model;
+    mt_arena *const mem = &c->study->mem;
     const int own = springs ? m->n_springs : m->n_bodies;
+    const size_t most = (size_t)own + (size_t)m->n_links + (size_t)m->n_joints;
     int n = 0;
-    mt_name *const names =
-        mt_arena_alloc(&c->study->mem, (size_t)own + (size_t)m->n_links, sizeof *names);
+    mt_name *const names = mt_arena_alloc(mem, most, sizeof *names);
     for (int i = 0; i < own && names != NULL; i++) {
         names[n++] = springs ? m->springs[i].name : m->bodies[i].name;
     }
     for (int i = 0; i < m->n_links && names != NULL; i++) {
         names[n++] = m->links[i].name;
     }
+    for (int i = 0; i < m->n_joints && springs && names != NULL; i++) {
+        const mt_joint *const joint = &m->joints[i];
+        const char *const bearing = joint->compliance == NULL
+                                        ? NULL
+                                        : mt_arena_printf(mem, "%s.bearing", joint->name.s);
+        if (bearing != NULL) {
+            names[n++] = (mt_name){.s = bearing, .addr = joint->name.addr};
+        }
+    }
     *out = names;
     return n;
+}
+
+/* The joint whose bearing has this name. */
+static const mt_joint *bearing_of(const mt_model *m, const char *name)
+{
+    static const char bearing[] = ".bearing";
+    for (int i = 0; i < m->n_joints; i++) {
+        const char *const own = m->joints[i].name.s;
+        const size_t length = strlen(own);
+        if (strncmp(own, name, length) == 0 && strcmp(name + length, bearing) == 0) {
+            return &m->joints[i];
+        }
+    }
+    return NULL;
 }
 
 static void check_directions(mt_study_check *c, mt_energy_goal *e, const mt_body *body)
@@ -246,6 +270,12 @@ static void check_spring(mt_study_check *c, const mt_goal *goal, const mt_energy
         return;
     }
     const mt_spring *const spring = at < m->n_springs ? &m->springs[at] : NULL;
+    const mt_joint *const joint =
+        at < m->n_springs + m->n_links ? NULL : bearing_of(m, e->spring_name.s);
+    if (joint != NULL) {
+        check_presence(c, goal, &joint->in, e->spring_name);
+        return;
+    }
     check_presence(c, goal, spring != NULL ? &spring->in : &m->links[at - m->n_springs].in,
                    e->spring_name);
     if (spring != NULL && spring->damper) {

@@ -155,6 +155,26 @@ class Energy(CliTest):
         self.assertEqual(sorted(int(np.argmax(kinetic[:, k])) for k in range(6)), list(range(6)))  # each direction has a mode of its own
         self.assertTrue(all(f < 23.75 / 1.1 * 1.000002 or f > 27.5 * 1.1 / 1.000002 for f in hz))
 
+    def test_a_bearing_that_yields_has_its_share(self):
+        """A wheel about its centre on a bearing of kx, ky and beside a spring k along x: kx / (kx + k) of the mode along x."""
+        kx, ky, k = 3e4, 9e4, 1e4
+        wheel = {"format": "modetune-model/1", "dimension": 2, "parameters": {"k": k}, "bodies": [{"name": "wheel", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 0]}],
+                 "joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "wheel"], "at": [0, 0], "compliance": {"stiffness_n_per_m": [kx, ky]}}],
+                 "springs": [{"name": "side", "type": "bushing", "bodies": ["ground", "wheel"], "at": [0, 0], "stiffness_n_per_m": ["k", 0], "stiffness_n_m_per_rad": 10}]}
+        wheel["configurations"] = {"as_is": {}}
+        self.write("problems/wheel.json", json.dumps(wheel))
+        asked = [{"mode": 2, "spring": "pin.bearing"}, {"mode": 2, "spring": "pin.bearing", "component": "x"}, {"mode": 3, "spring": "pin.bearing", "component": "y"}, {"mode": 2, "spring": "side"}]
+        study = {"format": "modetune-study/1", "model": "../problems/wheel.json", "variables": [{"parameter": "k", "lower": 1e3, "upper": 3e4}],
+                 "goals": [{"type": "energy", "at_least_percent": 1, **goal} for goal in asked]}
+        done = self.run_program("run", self.write("studies/wheel.json", json.dumps(study)), "-o", "out", "--quiet", "--report", "none")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (design,) = json.loads((self.folder / "out/wheel/result.json").read_text())["recommendations"]
+        for goal, share in zip(design["goals"], (75, 75, 100, 25)):
+            self.assertAlmostEqual(goal["value"], share, delta=1e-8)
+        study["goals"][0]["spring"] = "side.bearing"
+        done = self.run_program("check", self.write("studies/wrong.json", json.dumps(study)))
+        self.assertIn('unknown spring or link "side.bearing"; did you mean', done.stderr)
+
 
 if __name__ == "__main__":
     main()
