@@ -781,29 +781,6 @@ mt_status mt_lowest_force(const mt_lowest *l, const double *force, mt_lowest_pus
     return MT_OK;
 }
 
-mt_status mt_lowest_base(mt_lowest *l, int axis, mt_lowest_push *p, mt_err *err)
-{
-    MT_TRY(check_interrupt(l, err));
-    if (!of_tree(l)) {
-        MT_TRY(mt_absolute_shift(&l->bodies, l->at, axis, p->dual, &l->mem, err));
-        for (int j = 0; j < l->bodies.n; j++) {
-            p->dual[j] = -p->dual[j];
-        }
-        return part_of_bodies(l, p, err);
-    }
-    const struct mt_lowest_operation *const o = l->operation;
-    mt_tree_shift(l->tree, axis, o->v);
-    mt_tree_momentum(l->tree, o->v, o->f, p->x, o->r);
-    part_of_tree(l, p);
-    for (int j = 0; j < l->tree->n_x; j++) {
-        p->x[j] = -p->x[j];
-    }
-    for (int j = 0; j < l->tree->n_rigid; j++) {
-        p->a[j] = -p->a[j];
-    }
-    return MT_OK;
-}
-
 mt_status mt_lowest_admit(const mt_lowest *l, double *x, mt_err *err)
 {
     if (of_tree(l)) {

@@ -117,8 +117,6 @@ void mt_lowest_push_init(const mt_lowest *l, mt_arena *mem, mt_lowest_push *p);
 /* Of the force[nq] on all states. Fails: MT_E_INTERRUPTED. */
 mt_status mt_lowest_force(const mt_lowest *l, const double *force, mt_lowest_push *p,
                           mt_err *err);
-/* Of M times the translation of all bodies by -1 along a global axis. */
-mt_status mt_lowest_base(mt_lowest *l, int axis, mt_lowest_push *p, mt_err *err);
 /* x := its projection, in the norm of H, on the motions that the joints allow, without
  * rigid-body modes: differences of large motions may leave them by rounding. */
 mt_status mt_lowest_admit(const mt_lowest *l, double *x, mt_err *err);

@@ -308,37 +308,6 @@ mt_status mt_absolute_stand(const mt_system *sys, const mt_state *settled, const
     return MT_OK;
 }
 
-mt_status mt_absolute_shift(const mt_absolute *o, const double *inputs, int axis, double *f,
-                            mt_arena *scratch, mt_err *err)
-{
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    mt_data data;
-    mt_placement at;
-    mt_term_list list[MT_TERM_KINDS];
-    mt_cx rows[MOST_ROWS * MT_LOCAL];
-    MT_TRY(mt_terms_new(o->sys, scratch, list, err));
-    MT_TRY(mt_absolute_stand(o->sys, o->settled, inputs, &data, &at, scratch, err));
-    memset(f, 0, (size_t)o->n * sizeof *f);
-    for (int i = 0; i < list[MT_TERM_MASS].n_terms; i++) {
-        const mt_term *const t = &list[MT_TERM_MASS].terms[i];
-        double along[MOST_ROWS] = {0.0};
-        mt_term_rows(&data, MT_TERM_MASS, t, at.pose, rows);
-        for (int k = axis; k < MT_LOCAL; k += 6) {
-            for (int r = 0; r < t->count && mt_local_dof(o->sys, t->body, k) >= 0; r++) {
-                along[r] += creal(rows[(r * MT_LOCAL) + k]);
-            }
-        }
-        for (int r = 0; r < t->count; r++) { /* as squares_of takes pairs apart */
-            const double sum = !t->pair ? along[r]
-                               : r == 0 ? along[0] + along[1]
-                                        : along[0] - along[1];
-            mt_rows_axpy(&o->m.row, t->first + r, o->m.c[t->first + r] * sum, f);
-        }
-    }
-    mt_arena_rewind(scratch, mark);
-    return MT_OK;
-}
-
 static mt_status make_absolute(mt_absolute *o, const double *inputs, mt_arena *mem,
                                mt_arena *scratch, bool *is, char *why, mt_err *err)
 {

@@ -48,10 +48,6 @@ mt_status mt_absolute_stand(const mt_system *sys, const mt_state *settled, const
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
 /* The transpose: f[n] := the coordinates' generalised forces of force[nq] on all states. */
 void mt_absolute_push(const mt_absolute *o, const double *force, double *f);
-/* f[n] := M times the translation of all bodies, those fixed to the ground included, by 1 along
- * a global axis. Scratch is returned. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
-mt_status mt_absolute_shift(const mt_absolute *o, const double *inputs, int axis, double *f,
-                            mt_arena *scratch, mt_err *err);
 /* The system's channels in the drawn or equilibrium position for n shapes, phi nq x n:
  * value n_channels x n. Scratch is returned. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const double *inputs,

@@ -191,6 +191,93 @@ void mt_linear_shift(const mt_linear *lin, int axis, double *r)
     }
 }
 
+static bool is_moved(const mt_linear *lin, int p)
+{
+    assert(lin->tangent == NULL || !lin->due);
+    return lin->tangent != NULL && lin->tangent[p].moves;
+}
+
+/* What the joints block has no part in K, C and M (products.c), but the ground's motion has
+ * one in its row: the joints carry that mass, and as they turn they let it go. */
+static bool is_blocked(const mt_linear *lin, int row, const mt_term *t)
+{
+    return mt_rows_empty(&lin->entries[MT_TERM_MASS], row) && !t->pair;
+}
+
+/* A row of the masses where all bodies and the ground move by 1 along an axis. */
+static double carried(const mt_linear *lin, int row, int axis)
+{
+    const double *const own = lin->rows[MT_TERM_MASS] + ((ptrdiff_t)row * MT_LOCAL);
+    return own[axis] + own[(MT_LOCAL / 2) + axis];
+}
+
+/* Its derivative. Masses that the ground holds are bars, along whose rows translations have
+ * constant parts. */
+static double carried_slope(const mt_linear *lin, const mt_rows *drows, const mt_term *t,
+                            int row, int axis)
+{
+    double sum = 0.0;
+    for (int k = drows->start[row]; k < drows->start[row + 1]; k++) {
+        for (int side = 0; side < (t->body[0] == t->body[1] ? 1 : 2); side++) {
+            const int body = t->body[side];
+            const bool along =
+                body != MT_GROUND && lin->sys->bodies[body].dof[axis] == drows->index[k];
+            sum += along ? drows->value[k] : 0.0;
+        }
+    }
+    return sum;
+}
+
+/* The row that row i of a term is multiplied with. */
+static int partner(const mt_term *t, int i)
+{
+    return t->pair ? (2 * t->first) + 1 - i : i;
+}
+
+static void add_base_rows(const mt_linear *lin, int axis, bool blocked, double *f)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        const double way = carried(lin, partner(t, i), axis);
+        if (way != 0.0 && is_blocked(lin, i, t) == blocked) {
+            const double c = -lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
+            mt_rows_axpy(&lin->full[MT_TERM_MASS], i, c * way, f);
+        }
+    }
+}
+
+void mt_linear_base_force(const mt_linear *lin, int axis, double *f, double *reduced)
+{
+    add_base_rows(lin, axis, false, f);
+    if (reduced != NULL) {
+        mt_linear_project(lin, f, reduced);
+    }
+    add_base_rows(lin, axis, true, f);
+}
+
+double mt_linear_base_slope(const mt_linear *lin, int p, int axis, const double *e)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
+    const mt_rows *const rows = &lin->full[MT_TERM_MASS];
+    const mt_rows *const drows = is_moved(lin, p) ? &lin->tangent[p].rows[MT_TERM_MASS] : NULL;
+    double sum = 0.0;
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        const int other = partner(t, i);
+        const double part = t->pair ? 0.5 : 1.0;
+        const double way = carried(lin, other, axis);
+        const double own = mt_rows_dot(rows, i, e);
+        sum -= part * mt_linear_slope(lin, t->coefficient, p) * own * way;
+        if (drows != NULL) {
+            sum -= part * lin->value[t->coefficient] *
+                   ((mt_rows_dot(drows, i, e) * way) +
+                    (own * carried_slope(lin, drows, t, other, axis)));
+        }
+    }
+    return sum;
+}
+
 void mt_linear_project(const mt_linear *lin, const double *w, double *out)
 {
     mt_eliminate_project(&lin->e, w, out);
@@ -205,12 +292,6 @@ void mt_linear_row_add(const mt_linear *lin, mt_term_kind kind, int row, double 
                        double *out)
 {
     mt_rows_axpy(&lin->full[kind], row, factor, out);
-}
-
-static bool is_moved(const mt_linear *lin, int p)
-{
-    assert(lin->tangent == NULL || !lin->due);
-    return lin->tangent != NULL && lin->tangent[p].moves;
 }
 
 double mt_linear_row_dot_slope(const mt_linear *lin, int p, mt_term_kind kind, int row,

@@ -31,6 +31,15 @@ mt_status mt_linear_joint_force(mt_linear *lin, int joint, int axis, mt_arena *m
                                 mt_joint_force *out, bool *unique, mt_err *err);
 /* r[nq] := translation of every body by 1 along a global axis. */
 void mt_linear_shift(const mt_linear *lin, int axis, double *r);
+/*
+ * Force on the states of a ground that accelerates by 1 along a global axis, the states being
+ * relative to it: f[nq] += -(M r + M_g r_g), r the translation of all bodies, M_g what masses
+ * between a body and the ground (bars) have there. reduced[n] += Z^T of it (NULL: not wanted);
+ * what the joints block is no more than rounding there, and left out.
+ */
+void mt_linear_base_force(const mt_linear *lin, int axis, double *f, double *reduced);
+/* e . (its derivative by input p), after an update with gradients. */
+double mt_linear_base_slope(const mt_linear *lin, int p, int axis, const double *e);
 /* out[n] := Z^T w. */
 void mt_linear_project(const mt_linear *lin, const double *w, double *out);
 /* Row i of a term's rows over the states, times phi (nq). */

@@ -337,6 +337,35 @@ void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v)
     add_joints(o, at, v);
 }
 
+void mt_motion_base(mt_motion *o, const mt_placement *at, int axis, double factor, double *out)
+{
+    const mt_system *const sys = o->lin->sys;
+    const mt_term_list *const list = &o->lin->list[MT_TERM_MASS];
+    for (int b = 0; b < sys->n_bodies; b++) {
+        const int dof = sys->bodies[b].dof[axis];
+        if (dof >= 0) {
+            mt_axpy(o->nq, -factor, o->mass + ((ptrdiff_t)dof * o->nq), out);
+        }
+    }
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        if (t->body[0] != MT_GROUND && t->body[1] != MT_GROUND) {
+            continue;
+        }
+        const int held = t->body[0] == MT_GROUND ? axis : (MT_LOCAL / 2) + axis;
+        const double weight = -factor * o->lin->value[t->coefficient];
+        double own[MT_LOCAL] = {0.0};
+        mt_term_rows(&o->lin->data, MT_TERM_MASS, t, at->pose, o->rows[0]);
+        for (int r = 0; r < t->count; r++) {
+            const mt_cx *const f = o->rows[0] + ((ptrdiff_t)r * MT_LOCAL);
+            for (int k = 0; k < MT_LOCAL; k++) {
+                own[k] += weight * creal(f[held]) * creal(f[k]);
+            }
+        }
+        add_local(sys, t->body, own, out);
+    }
+}
+
 void mt_motion_stiffness(mt_motion *o, const mt_placement *at, double *k)
 {
     const mt_term_list *const list = &o->lin->list[MT_TERM_STIFFNESS];

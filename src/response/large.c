@@ -133,6 +133,25 @@ static void large_sensor_row(work *k, int channel)
     add_term_row(k, t, row, 1.0);
 }
 
+/* k->states := force of the ground's acceleration by 1 along an axis: that of the masses on a
+ * translation of all bodies, and of the ground where it holds a bar's end. */
+static void large_base_force(work *k, int axis)
+{
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    clear(k);
+    for (int i = 0; i < k->list[MT_TERM_MASS].n_terms; i++) {
+        const mt_term *const t = &k->list[MT_TERM_MASS].terms[i];
+        const double c = large_value(k, t->coefficient) * (t->pair ? 0.5 : 1.0);
+        mt_term_rows(&k->d, MT_TERM_MASS, t, k->at.pose, rows);
+        for (int r = 0; r < t->count; r++) {
+            const mt_cx *const other =
+                rows + ((ptrdiff_t)MT_LOCAL * (t->pair ? 1 - r : r));
+            const double way = creal(other[axis]) + creal(other[(MT_LOCAL / 2) + axis]);
+            add_term_row(k, t, rows + ((ptrdiff_t)MT_LOCAL * r), -c * way);
+        }
+    }
+}
+
 static mt_status open_inputs(work *k, mt_err *err)
 {
     k->in = mt_arena_alloc(k->scratch, (size_t)k->ports->n_in, sizeof *k->in);
@@ -141,11 +160,11 @@ static mt_status open_inputs(work *k, mt_err *err)
         const mt_port *const port = &k->ports->in[i];
         MT_TRY(new_force(k, &k->in[i], err));
         if (port->kind == MT_PORT_BASE) {
-            MT_TRY(mt_lowest_base(k->l, port->index, &k->in[i].push, err));
+            large_base_force(k, port->index);
         } else {
             large_sensor_row(k, port->index);
-            MT_TRY(mt_lowest_force(k->l, k->states, &k->in[i].push, err));
         }
+        MT_TRY(mt_lowest_force(k->l, k->states, &k->in[i].push, err));
     }
     return MT_OK;
 }
@@ -316,21 +335,17 @@ static void multiply_terms(work *k, mt_term_kind kind, const int *moved, coeffic
     }
 }
 
-/* What inputs pass on, -v . f; k->states is M v and is overwritten. */
+/* What inputs pass on, -v . f; k->states is overwritten. */
 static void pass_inputs(work *k, const double *v, double *d)
 {
-    const mt_system *const sys = k->l->sys;
-    for (int i = 0; i < k->ports->n_in; i++) { /* f = -M times a translation of all bodies */
-        for (int b = 0; b < sys->n_bodies && k->ports->in[i].kind == MT_PORT_BASE; b++) {
-            const int q = sys->bodies[b].dof[k->ports->in[i].index];
-            d[i] += q >= 0 ? k->states[q] : 0.0;
-        }
-    }
     for (int i = 0; i < k->ports->n_in; i++) {
-        if (k->ports->in[i].kind != MT_PORT_BASE) {
-            large_sensor_row(k, k->ports->in[i].index);
-            d[i] = -mt_dot(sys->nq, v, k->states);
+        const mt_port *const port = &k->ports->in[i];
+        if (port->kind == MT_PORT_BASE) {
+            large_base_force(k, port->index);
+        } else {
+            large_sensor_row(k, port->index);
         }
+        d[i] = -mt_dot(k->l->sys->nq, v, k->states);
     }
 }
 

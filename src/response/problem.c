@@ -119,9 +119,7 @@ static mt_status add_input(build *k, int i, mt_err *err)
                (size_t)k->n * sizeof *column);
         return MT_OK;
     }
-    mt_linear_shift(k->a->lin, port->index, k->w);
-    mt_linear_states_product(k->a->lin, MT_MATRIX_MASS, -1.0, k->w, full);
-    mt_linear_project(k->a->lin, full, column);
+    mt_linear_base_force(k->a->lin, port->index, full, column);
     return MT_OK;
 }
 

@@ -240,7 +240,6 @@ typedef struct work {
     const double complex *y;  /* n x n_out */
     side *in;                 /* [n_in] */
     side *out;                /* [n_out] */
-    double *shift;            /* [nq] */
     mt_ratio_modes ratio;
     double *q;          /* r x r: Q of one input */
     double **geometric; /* [n_out][nq]: slope of what stands in a joint, of one input; NULL */
@@ -335,11 +334,10 @@ int mt_slope_channel(const mt_linear *lin, const mt_port *port)
     return mt_linear_terms(lin, MT_TERM_CHANNEL)->terms[port->index].first;
 }
 
-void mt_slope_push(const mt_linear *lin, const mt_port *in, double *shift, double *f)
+void mt_slope_push(const mt_linear *lin, const mt_port *in, double *f)
 {
     if (in->kind == MT_PORT_BASE) {
-        mt_linear_shift(lin, in->index, shift);
-        mt_linear_states_product(lin, MT_MATRIX_MASS, -1.0, shift, f);
+        mt_linear_base_force(lin, in->index, f, NULL);
     } else {
         mt_linear_row_add(lin, MT_TERM_CHANNEL, mt_slope_channel(lin, in), 1.0, f);
     }
@@ -416,7 +414,7 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(expand_to_states(k, x, &s->states, err));
-    mt_slope_push(k->lin, port, k->shift, f);
+    mt_slope_push(k->lin, port, f);
     add_real(k->nq, k->power[mt_response_power(port)], f, &w);
     return close_side(k, s, &w, err);
 }
@@ -604,10 +602,9 @@ static double complex force_slope(work *k, int p, int i, const pair *e)
     if (port->kind == MT_PORT_SENSOR) {
         return row_slope(k, p, MT_TERM_CHANNEL, mt_slope_channel(k->lin, port), e);
     }
-    mt_linear_shift(k->lin, port->index, k->shift);
-    const double re = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[0], k->shift);
-    const double im = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[1], k->shift);
-    return -k->power[mt_response_power(port)] * mt_complex(re, im);
+    const double re = mt_linear_base_slope(k->lin, p, port->index, e->part[0]);
+    const double im = mt_linear_base_slope(k->lin, p, port->index, e->part[1]);
+    return k->power[mt_response_power(port)] * mt_complex(re, im);
 }
 
 /* d(sigma) . q - d(t) . l. */
@@ -687,7 +684,6 @@ static mt_status open_ports(work *k, bool *singular, mt_err *err)
     k->y = y;
     k->in = mt_arena_alloc(k->mem, (size_t)f->n_in, sizeof *k->in);
     k->out = mt_arena_alloc(k->mem, (size_t)f->n_out, sizeof *k->out);
-    k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(mt_basis_solve(k->p->basis, k->w, x, y, singular, k->mem, err));
     for (int i = 0; i < f->n_in && !*singular; i++) {

@@ -36,8 +36,8 @@ typedef struct mt_slope_factor {
 enum { MT_SLOPE_MATRICES = 4 };
 void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
 
-/* f[nq] += force of an input; shift[nq]: unit motion along the axis of a base input. */
-void mt_slope_push(const mt_linear *lin, const mt_port *in, double *shift, double *f);
+/* f[nq] += force of an input. */
+void mt_slope_push(const mt_linear *lin, const mt_port *in, double *f);
 /* e, nq x (n + 1): the motions of the n degrees of freedom, and -v[nq] (NULL: 0). Fails:
  * MT_E_MEMORY. */
 mt_status mt_slope_motions(const mt_linear *lin, int nq, int n, const double *v, double *e,

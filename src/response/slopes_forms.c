@@ -44,7 +44,6 @@ typedef struct work {
     double *carried[MATRICES]; /* m x ny: P A_j E */
     double *f[PARTS];          /* m x ny */
     double *g[PARTS];          /* m x ny */
-    double *shift;             /* [nq] along the ground's axis */
     mt_ratio_modes ratio;
     double *psi;         /* nq x ny: Phi F Phi^T M E */
     double *coefficient; /* r x ny: Phi^T M E */
@@ -88,7 +87,7 @@ static mt_status set_load_multipliers(work *k, mt_err *err)
     double *const balanced = mt_arena_f64(k->mem, (size_t)k->m, 1);
     const ptrdiff_t last = (ptrdiff_t)k->n * k->m;
     MT_TRY(mt_arena_check(k->mem, err));
-    mt_slope_push(k->lin, k->in, k->shift, f);
+    mt_slope_push(k->lin, k->in, f);
     MT_TRY(multipliers(k, 1, f, k->f[part_at(mt_response_power(k->in))] + last, err));
     if (k->out->kind == MT_PORT_JOINT) {
         const double *const standing = k->p->ways->joint[k->column].geometric;
@@ -171,7 +170,6 @@ static mt_status open_work(work *k, mt_err *err)
     const size_t nq = (size_t)k->nq;
     const size_t m = (size_t)k->m;
     k->e = mt_arena_f64(k->mem, nq, ny);
-    k->shift = mt_arena_f64(k->mem, nq, 1);
     k->half = mt_arena_f64(k->mem, nq, ny);
     k->moved = mt_arena_f64(k->mem, m, ny);
     for (int j = 0; j < MATRICES; j++) {
@@ -305,7 +303,7 @@ static void input_column(const work *k, int p, double *t)
             k->in->kind == MT_PORT_SENSOR
                 ? mt_linear_row_dot_slope(k->lin, p, MT_TERM_CHANNEL,
                                           mt_slope_channel(k->lin, k->in), e)
-                : -mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e, k->shift);
+                : mt_linear_base_slope(k->lin, p, k->in->index, e);
     }
 }
 

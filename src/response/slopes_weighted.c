@@ -45,7 +45,6 @@ typedef struct work {
     double *g[MATRICES];                 /* nq x nq: E G_j Z^T */
     double *lambda;                      /* m x nq: what dA goes with */
     double *l;                           /* [m]: sum W l */
-    double *shift;                       /* [nq] along the ground's axis */
     mt_ratio_modes ratio;
     double *coefficient; /* r x ny: Phi^T M E */
     double *turn;        /* r x r: what Q goes with */
@@ -168,7 +167,6 @@ static mt_status make_e(work *k, mt_err *err)
     const double *const v =
         k->out->kind == MT_PORT_JOINT ? k->p->ways->joint[k->of->out].v : NULL;
     k->e = mt_arena_f64(k->mem, (size_t)k->nq, (size_t)k->n + 1);
-    k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     return mt_slope_motions(k->lin, k->nq, k->n, v, k->e, k->mem, err);
 }
@@ -196,7 +194,7 @@ static mt_status add_weighted_loads(work *k, const balance *b, mt_err *err)
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 2);
     double *const sigma = f + k->nq;
     MT_TRY(mt_arena_check(k->mem, err));
-    mt_slope_push(k->lin, k->in, k->shift, f);
+    mt_slope_push(k->lin, k->in, f);
     for (ptrdiff_t j = 0; j < k->ny; j++) {
         mt_axpy(k->nq, creal(k->y[mt_response_power(k->in)][j]), f, b->in + (j * k->nq));
     }
@@ -389,7 +387,7 @@ static double force_slope(const work *k, int p, double *part, double *e)
     return k->in->kind == MT_PORT_SENSOR
                ? mt_linear_row_dot_slope(k->lin, p, MT_TERM_CHANNEL,
                                          mt_slope_channel(k->lin, k->in), e)
-               : -mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e, k->shift);
+               : mt_linear_base_slope(k->lin, p, k->in->index, e);
 }
 
 /* The same for a joint's force, with its own coefficients and turns. */

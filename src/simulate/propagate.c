@@ -595,12 +595,7 @@ static void input_row(oscillators *o, const mt_sim_input *in, mt_gauge_motion *g
         return;
     }
     memset(o->row, 0, (size_t)o->nq * sizeof *o->row);
-    for (int b = 0; b < o->sys->n_bodies; b++) {
-        const int dof = o->sys->bodies[b].dof[in->at];
-        if (dof >= 0) {
-            mt_axpy(o->nq, -1.0, o->motion.mass + ((ptrdiff_t)dof * o->nq), o->row);
-        }
-    }
+    mt_motion_base(&o->motion, &o->at, in->at, 1.0, o->row);
 }
 
 /* Rows of inputs, gauges and lengths, all at rest. */

@@ -323,17 +323,6 @@ static void increments(const mt_system *sys, const double *u, const double *v, d
     }
 }
 
-static void add_base(const mt_sim *s, int axis, double acceleration, double *push)
-{
-    const mt_system *const sys = s->sys;
-    for (int b = 0; b < sys->n_bodies; b++) {
-        const int dof = sys->bodies[b].dof[axis];
-        if (dof >= 0) {
-            mt_axpy(s->nq, -acceleration, s->motion.mass + ((ptrdiff_t)dof * s->nq), push);
-        }
-    }
-}
-
 /* Motions of the locked drives: positions relative to their held ones, velocities and
  * accelerations. */
 typedef struct drive_motions {
@@ -373,7 +362,7 @@ static mt_status pushed(mt_sim *s, double t, const double *v, mt_err *err)
         }
         MT_TRY(mt_signal_eval(in->signal, t, value, err));
         if (in->push == MT_SIM_BASE) {
-            add_base(s, in->at, value[in->slope], s->push);
+            mt_motion_base(&s->motion, &s->at, in->at, value[in->slope], s->push);
         } else {
             const mt_gauge g = {.channel = in->at, .joint = -1};
             mt_motion_gauge(&s->motion, &s->at, v, g, &s->gauge);

@@ -88,10 +88,8 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
 void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, double *r);
 /* Generalised forces of forces on the bodies: x, r := T^T f; f[s n] is overwritten. */
 void mt_tree_gather(const mt_tree *t, double *f, double *x, double *r);
-/* f[s n] := forces on the bodies from those on states, force[nq]; v[s n] := the translation of
- * all bodies by 1 along a global axis. */
+/* f[s n] := forces on the bodies from those on states, force[nq]. */
 void mt_tree_push(const mt_tree *t, const double *force, double *f);
-void mt_tree_shift(const mt_tree *t, int axis, double *v);
 /* w[s n] := motion of each body relative to its parent: N (F y + R r). v from mt_tree_motion of
  * the same (x, r). */
 void mt_tree_within(const mt_tree *t, const double *x, const double *r, const double *v,

@@ -191,15 +191,6 @@ void mt_tree_push(const mt_tree *t, const double *force, double *f)
     }
 }
 
-void mt_tree_shift(const mt_tree *t, int axis, double *v)
-{
-    for (int i = 0; i < t->n; i++) {
-        for (int k = 0; k < t->s; k++) {
-            v[k + ((ptrdiff_t)t->s * i)] = mt_tree_freedom(t, k) == axis ? 1.0 : 0.0;
-        }
-    }
-}
-
 void mt_tree_within(const mt_tree *t, const double *x, const double *r, const double *v,
                     double *w)
 {

@@ -186,5 +186,98 @@ static void large__loops_have_them_too(mt_test *t)
     try_all(t, true);
 }
 
+/* A row of masses on rollers, from the ground to the ground where `both`, of elastic bars with
+ * mass. */
+static void write_row(mt_writer *w, bool both)
+{
+    enum { MASSES = 12 };
+    mt_write(w, "{ \"format\": \"modetune-model/1\", \"name\": \"row\", \"dimension\": 2,"
+                " \"bodies\": [ ");
+    for (int i = 1; i <= MASSES; i++) {
+        mt_write(w,
+                 "%s{ \"name\": \"m%d\", \"mass_kg\": %g, \"inertia_kg_m2\": 1, \"centre\":"
+                 " [%d, 0] }",
+                 i == 1 ? "" : ", ", i, 0.5 + (0.1 * (i % 4)), i);
+    }
+    mt_write(w, " ], \"joints\": [ ");
+    for (int i = 1; i <= MASSES; i++) {
+        char before[16] = "ground";
+        (void)snprintf(before, sizeof before, i == 1 ? "ground" : "m%d", i - 1);
+        mt_write(w,
+                 "%s{ \"name\": \"j%d\", \"type\": \"prismatic\", \"bodies\": [\"%s\","
+                 " \"m%d\"], \"at\": [%d, 0], \"axis\": [1, 0] }",
+                 i == 1 ? "" : ", ", i, before, i, i);
+    }
+    mt_write(w, " ], \"springs\": [ ");
+    for (int i = 1; i <= MASSES + (both ? 1 : 0); i++) {
+        char ends[2][16] = {"ground", "ground"};
+        (void)snprintf(ends[0], sizeof ends[0], i == 1 ? "ground" : "m%d", i - 1);
+        (void)snprintf(ends[1], sizeof ends[1], i > MASSES ? "ground" : "m%d", i);
+        mt_write(w,
+                 "%s{ \"name\": \"b%d\", \"type\": \"bar\", \"bodies\": [\"%s\", \"%s\"],"
+                 " \"at\": [[%d, 0], [%d, 0]], \"youngs_modulus_pa\": 1e6, \"area_m2\": 0.01,"
+                 " \"density_kg_per_m3\": 90 }",
+                 i == 1 ? "" : ", ", i, ends[0], ends[1], i - 1, i);
+    }
+    mt_write(w,
+             " ], \"sensors\": [ { \"name\": \"s\", \"on\": \"m1\", \"directions\": [\"x\"] },"
+             " { \"name\": \"e\", \"on\": \"m%d\", \"directions\": [\"x\"] } ],"
+             " \"configurations\": { \"c\": {} } }",
+             MASSES);
+}
+
+/* By few modes as by all, which test_moving_ground.c compares with a table that moves. */
+static void large__bars_on_the_ground_are_driven_by_it(mt_test *t)
+{
+    static const char *const IN[] = {"base.x"};
+    static const char *const OUT[] = {"s.x:acceleration", "e.x:relative_displacement",
+                                      "spring.b1"};
+    const mt_response_request request = {.n_in = 1, .inputs = IN, .n_out = 3, .outputs = OUT};
+    const mt_lowest_want want = {.count = FEW, .shapes = true};
+    const mt_analysis_options opt = mt_analysis_options_default();
+    char *const text = malloc(TREE_TEXT);
+    for (int both = 0; both < 2 && text != NULL; both++) {
+        char why[MT_LARGE_WHY] = "";
+        bool is = false;
+        mech m;
+        mt_lowest *l = NULL;
+        mt_response few = {.a = NULL};
+        mt_response all = {.a = NULL};
+        mt_writer row = {text, TREE_TEXT, 0};
+        write_row(&row, both == 1);
+        bool ok =
+            mech_must(t, mech_parse(t, text), "c", "", &m) &&
+            CHECK_INT(t, mt_analysis_solve(m.a, m.at, &opt, &m.err), MT_OK) &&
+            CHECK_INT(t, mt_response_open(m.a, &request, &all, &m.err), MT_OK) &&
+            CHECK_INT(t, mt_lowest_new(&(mt_system_def){.model = m.model}, want, &l, &m.err),
+                      MT_OK) &&
+            CHECK_INT(t, l->way, both == 1 ? MT_LOWEST_SPARSE : MT_LOWEST_TREE);
+        const double to = ok ? 0.5 * sqrt(l->found.tau) : nan("");
+        ok = ok &&
+             CHECK_INT(t, mt_response_open_large(l, &request, to, &few, &is, why, &m.err),
+                       MT_OK) &&
+             CHECK(t, is);
+        for (int i = 1; i < FREQUENCIES && ok; i++) {
+            double complex h[2][3];
+            double error[2][3];
+            const double w = to * i / FREQUENCIES;
+            const mt_sample a = {.h = h[0], .error = error[0]};
+            const mt_sample b = {.h = h[1], .error = error[1]};
+            CHECK_INT(t, mt_transfer_at(few.chosen, w, &a, &few.mem, &m.err), MT_OK);
+            CHECK_INT(t, mt_transfer_at(all.chosen, w, &b, &all.mem, &m.err), MT_OK);
+            for (int o = 0; o < 3; o++) {
+                mt_test_row(t, "%s, w = %g, %s", both == 1 ? "both" : "one", w, OUT[o]);
+                CHECK_NEAR_ABS(t, cabs(h[0][o] - h[1][o]), 0.0, 1e-9 * cabs(h[1][o]));
+            }
+        }
+        mt_response_free(&few);
+        mt_response_free(&all);
+        mt_lowest_delete(l);
+        mech_free(&m);
+    }
+    free(text);
+}
+
 MT_TEST_MAIN(MT_TEST(large__responses_are_those_of_all_modes),
-             MT_TEST(large__loops_have_them_too))
+             MT_TEST(large__loops_have_them_too),
+             MT_TEST(large__bars_on_the_ground_are_driven_by_it))

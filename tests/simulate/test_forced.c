@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Small steady motions under a sine are those of the linear system,
- *     (K + i w C - w^2 M) y = B,   (relative, under unit base acceleration B = -M r)
+ *     (K + i w C - w^2 M) y = B,   (relative, under unit base acceleration B = -M r; of bars
+ * that the ground holds it has a part too)
  * solved here as one real system of twice the size; and a linear mechanism is so at any size.
  */
 #include "simulate/motions.h"
@@ -62,6 +63,14 @@ static void at_rest(motion *m, const mt_sim_input *in, double *b, double *row)
             along[m->sys->bodies[i].dof[in->at]] = 1.0;
         }
         mt_gemv(false, m->sys->nq, m->sys->nq, -1.0, o.mass, m->sys->nq, along, 0.0, b);
+        for (int i = 0; i < m->sys->n_inertias; i++) { /* b/6 of a bar between them */
+            const mt_inertia_def *const bar = &m->sys->inertias[i];
+            const int end = bar->body[0] == MT_GROUND ? bar->body[1] : bar->body[0];
+            if (bar->body[0] == MT_GROUND || bar->body[1] == MT_GROUND) {
+                b[m->sys->bodies[end].dof[in->at]] -=
+                    mt_linear_value(m->lin, bar->coefficient) / 6.0;
+            }
+        }
     }
     g.row = row;
     mt_motion_gauge(&o, &m->start.at, still, m->gauges[0], &g);
@@ -131,12 +140,75 @@ static const char CHAIN[] =
     " {\"name\": \"s2\", \"on\": \"m2\", \"directions\": [\"x\"]}],"
     " \"configurations\": {\"c\": {}}}";
 
+/* On bars: linear in the first, by a rod that swings in the second. */
+static const char BARS[] =
+    "{\"format\": \"modetune-model/1\", \"name\": \"bars\", \"dimension\": 2,"
+    " \"bodies\": [{\"name\": \"table\", \"mass_kg\": 1, \"inertia_kg_m2\": 1,"
+    " \"centre\": [0, 0], \"in\": [\"table\"]},"
+    " {\"name\": \"m\", \"mass_kg\": 2, \"centre\": [1, 0]}],"
+    " \"joints\": [{\"name\": \"rail\", \"type\": \"pin-in-slot\", \"bodies\": [\"ground\","
+    " \"m\"], \"at\": [1, 0], \"axis\": [1, 0], \"in\": [\"linear\"]},"
+    " {\"name\": \"way\", \"type\": \"prismatic\", \"bodies\": [\"ground\", \"table\"],"
+    " \"at\": [0, 0], \"axis\": [1, 0], \"in\": [\"table\"]},"
+    " {\"name\": \"rod\", \"type\": \"distance\", \"bodies\": [\"ground\", \"m\"],"
+    " \"at\": [[0.6, -0.8], [1, 0]], \"mass_kg\": 5, \"in\": [\"swings\"]},"
+    " {\"name\": \"rod_t\", \"type\": \"distance\", \"bodies\": [\"table\", \"m\"],"
+    " \"at\": [[0.6, -0.8], [1, 0]], \"mass_kg\": 5, \"in\": [\"table\"]}],"
+    " \"springs\": [{\"name\": \"bar\", \"type\": \"bar\", \"bodies\": [\"m\", \"ground\"],"
+    " \"at\": [[1, 0], [0, 0]], \"youngs_modulus_pa\": 9e3, \"area_m2\": 0.1,"
+    " \"density_kg_per_m3\": 60, \"in\": [\"linear\", \"swings\"]},"
+    " {\"name\": \"bar_t\", \"type\": \"bar\", \"bodies\": [\"m\", \"table\"],"
+    " \"at\": [[1, 0], [0, 0]], \"youngs_modulus_pa\": 9e3, \"area_m2\": 0.1,"
+    " \"density_kg_per_m3\": 60, \"in\": [\"table\"]}],"
+    " \"dampers\": [{\"name\": \"c\", \"type\": \"axial\", \"bodies\": [\"ground\", \"m\"],"
+    " \"at\": [[0, 0], [1, 0]], \"damping_n_s_per_m\": 20, \"in\": [\"linear\","
+    " \"swings\"]},"
+    " {\"name\": \"c_t\", \"type\": \"axial\", \"bodies\": [\"table\", \"m\"],"
+    " \"at\": [[0, 0], [1, 0]], \"damping_n_s_per_m\": 20, \"in\": [\"table\"]}],"
+    " \"sensors\": [{\"name\": \"s\", \"on\": \"m\"}],"
+    " \"configurations\": {\"linear\": {}, \"swings\": {},"
+    "  \"table\": {}}}";
+
+/* Large motions on a moving ground are those on a table that is moved alike. */
+static void simulate__a_moving_ground_is_a_table_that_is_moved(mt_test *t)
+{
+    /* from rest: 0.3 * 0.9 = 0.15 * 1.8 */
+    static const mt_sine SINES[2] = {{.amplitude = 0.3, .hz = 0.9},
+                                     {.amplitude = -0.15, .hz = 1.8}};
+    static const mt_signal SIGNAL = {.kind = MT_SIGNAL_SINES, .n = 2, .sines = SINES};
+    static const mt_sim_input IN[2] = {
+        {.push = MT_SIM_BASE, .at = 0, .slope = 2, .signal = &SIGNAL},
+        {.push = MT_SIM_MOVE, .at = 0, .signal = &SIGNAL}};
+    motion m[2];
+    bool ran = motion_open(t, mech_parse(t, BARS), "swings", &m[0]);
+    ran = motion_open_driven(t, mech_parse(t, BARS), "table", "way", 0.0, &m[1]) && ran;
+    for (int i = 0; i < 2 && ran; i++) {
+        motion_watch(t, &m[i], "s.x");
+        motion_watch(t, &m[i], "s.y");
+        m[i].opt.n_inputs = 1;
+        m[i].opt.inputs = &IN[i];
+        ran = motion_run(t, &m[i], 1.5, 0.1);
+    }
+    double most = 0.0;
+    for (ptrdiff_t at = 0; ran && at < (ptrdiff_t)2 * m[0].r.n; at++) {
+        mt_test_row(t, "value %td", at);
+        CHECK_NEAR_ABS(t, m[0].r.acceleration[at], m[1].r.acceleration[at], 1e-6);
+        most = fmax(most, fabs(m[0].r.acceleration[at]));
+    }
+    CHECK(t, most > 1.0);
+    motion_free(&m[0]);
+    motion_free(&m[1]);
+}
+
 static void simulate__steady_motions_are_those_of_the_linear_system(mt_test *t)
 {
     mt_test_row(t, "two masses, force");
     settles(t, mech_parse(t, CHAIN), NULL, "s1.x", "s2.x", 10.0);
     mt_test_row(t, "two masses, moving ground");
     settles(t, mech_parse(t, CHAIN), NULL, NULL, "s1.x", 2.0);
+    mt_test_row(t, "bars, moving ground");
+    settles(t, mech_parse(t, BARS), "linear", NULL, "s.x", 2.0);
+    settles(t, mech_parse(t, BARS), "swings", NULL, "s.y", 1e-3);
     mt_test_row(t, "a body on a ball joint, a moment");
     settles(t, mech_load(t, "space_body"), "damped", "s.ry", "s.x", 0.1);
     mt_test_row(t, "the same, moving ground");
@@ -257,6 +329,7 @@ static void simulate__signals_have_their_derivatives(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(simulate__steady_motions_are_those_of_the_linear_system),
+             MT_TEST(simulate__a_moving_ground_is_a_table_that_is_moved),
              MT_TEST(simulate__a_random_signal_has_its_mean_square),
              MT_TEST(simulate__lines_are_the_sum_of_their_sines),
              MT_TEST(simulate__signals_have_their_derivatives))
