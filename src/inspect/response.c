@@ -260,9 +260,7 @@ enum { COMPARED = 200 };
 
 #define THIS mt_matrix_row
 static const mt_field matrix_fields[] = {
-    MT_F_NUMBERS(NULL, value, n,
-                 "A row of the matrix, in SI.",
-                 MT_F_EVERY(step)),
+    MT_F_NUMBERS(NULL, value, n, "A row of the matrix, in SI.", MT_F_EVERY(step)),
 };
 static const mt_record matrix_record = MT_F_BARE_RECORD_OF(matrix_fields);
 #undef THIS
@@ -282,7 +280,8 @@ static const mt_field state_space_fields[] = {
     MT_F_LIST("A", a, n_states, mt_matrix_row, matrix_record,
               "Rows of A in x' = A x + B u, in SI."),
     MT_F_LIST("B", b, n_states, mt_matrix_row, matrix_record, "Rows of B, in SI."),
-    MT_F_LIST("C", c, n_outputs, mt_matrix_row, matrix_record, "Rows of C in y = C x + D u, in SI."),
+    MT_F_LIST("C", c, n_outputs, mt_matrix_row, matrix_record,
+              "Rows of C in y = C x + D u, in SI."),
     MT_F_LIST("D", d, n_outputs, mt_matrix_row, matrix_record, "Rows of D, in SI."),
     MT_F_FLAG("viscous_for_loss_factors", viscous_for_loss_factors,
               "Loss factors stand as the viscous damping that takes as much energy from each "

@@ -291,10 +291,11 @@ static const mt_field joint_fields[] = {
         "ratio", ratio,
         "Its motion per motion of the driven joint, the first of several, in rad or m per rad "
         "or m: the exact slope."),
-    MT_F_NUMBERS("ratios", ratios, n_ratios,
-                 "With several --drive: the same per motion of each, the others held, in rad or m per "
-                 "rad or m.",
-                 MT_F_WHEN(several)),
+    MT_F_NUMBERS(
+        "ratios", ratios, n_ratios,
+        "With several --drive: the same per motion of each, the others held, in rad or "
+        "m per rad or m.",
+        MT_F_WHEN(several)),
 };
 static const mt_record joint_record =
     MT_F_RECORD_OF(joint_fields, "joint", "A joint with a coordinate at a position.");

@@ -45,8 +45,7 @@ void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v);
 /* out[nq] += factor times the force of a ground that accelerates by 1 along a global axis, the
  * velocities being relative to it: what a translation of all bodies and of the ends of bars
  * that the ground holds makes of the masses. After an evaluation at `at`. */
-void mt_motion_base(mt_motion *o, const mt_placement *at, int axis, double factor,
-                    double *out);
+void mt_motion_base(mt_motion *o, const mt_placement *at, int axis, double factor, double *out);
 /* k, nq x nq := sum of k f f^T over the springs, f their directions at `at`, where it was
  * evaluated: the stiff part of the motion. The geometric stiffness of loads and preload is not
  * included. */

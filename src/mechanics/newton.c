@@ -1255,8 +1255,8 @@ static mt_status refuse_not_converged(mt_newton_work *w, const mt_placement *at,
     char where[WHERE_SIZE];
     if (!isfinite(w->residual)) {
         return mt_fail(err, MT_E_EQUILIBRIUM,
-                       "no equilibrium found after %d iterations: the forces at work grow beyond "
-                       "all numbers",
+                       "no equilibrium found after %d iterations: the forces at work grow "
+                       "beyond all numbers",
                        stage->iterations);
     }
     mt_eliminate_project(&solver.e, w->g, w->reduced);

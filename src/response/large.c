@@ -144,8 +144,7 @@ static void large_base_force(work *k, int axis)
         const double c = large_value(k, t->coefficient) * (t->pair ? 0.5 : 1.0);
         mt_term_rows(&k->d, MT_TERM_MASS, t, k->at.pose, rows);
         for (int r = 0; r < t->count; r++) {
-            const mt_cx *const other =
-                rows + ((ptrdiff_t)MT_LOCAL * (t->pair ? 1 - r : r));
+            const mt_cx *const other = rows + ((ptrdiff_t)MT_LOCAL * (t->pair ? 1 - r : r));
             const double way = creal(other[axis]) + creal(other[(MT_LOCAL / 2) + axis]);
             add_term_row(k, t, rows + ((ptrdiff_t)MT_LOCAL * r), -c * way);
         }

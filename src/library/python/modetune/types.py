@@ -2883,7 +2883,7 @@ class CommandResponseStateSpace(TypedDict):
     from_hz: float
     to_hz: float
     compared: int
-    largest_difference_percent: Optional[float]
+    largest_difference_percent: float
 
 
 class CommandSchemaListed(TypedDict):
