@@ -358,16 +358,19 @@ static const mt_field effective_fields[] = {
               "Of the ground: \"x\", \"y\", \"z\" along, \"rx\", \"ry\", \"rz\" about a global "
               "axis."),
     MT_F_TEXT("unit", unit, "Of the masses: \"kg\", about an axis \"kg m^2\"."),
-    MT_F_NUMBER("total", total,
-                "Mass, or moment of inertia, of all that no fixed joints hold to the ground."),
-    MT_F_NUMBER("sum", sum, "Sum of the effective masses of the modes that are listed."),
+    MT_F_NUMBER(
+        "total", total,
+        "Mass, or moment of inertia, of all that no fixed joints hold to the ground, in "
+        "the unit that `unit` names."),
+    MT_F_NUMBER("sum", sum,
+                "Sum of the effective masses of the modes that are listed, in the same unit."),
     MT_F_NUMBER_OR_NULL("sum_percent", sum_percent,
                         "That in percent of the total; null: the total is 0."),
     MT_F_NUMBERS("participation", participation, n_modes,
                  "Participation factor of each of the modes, of the mass-normalised "
                  "shape [sqrt(kg) or m sqrt(kg)]."),
     MT_F_NUMBERS("effective_mass", mass, n_modes,
-                 "Effective modal mass of each: the square of that."),
+                 "Effective modal mass of each, in the same unit: the square of that."),
 };
 static const mt_record effective_record = MT_F_RECORD_OF(
     effective_fields, "effective_mass", "What modes have of a ground that moves one way.");

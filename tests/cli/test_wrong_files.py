@@ -93,6 +93,9 @@ WRONG = {
     "proof_s": [(set_to(-1), "error", "from 0 to 1e\\+06")],
     "target_hz": ASKED, "at_least_hz": ASKED, "at_most_hz": ASKED, "frequency_hz": POSITIVE,
     "at_least": POSITIVE, "at_most": POSITIVE, "target": POSITIVE, "at_least_percent": POSITIVE,
+    ("goal_apart", "at_least_percent"): POSITIVE, ("goal_static", "target"): [(set_to("abc"), "error", "abc")],
+    ("goal_static", "at_least"): [(beyond("at_most", 1), "error", "is not above")],
+    ("goal_static", "at_most"): [(beyond("at_least", -1), "error", "is not above")],
     ("goal_apart", "modes"): [(set_to([1]), "error", "at least two modes")],
     ("goal_mac", "at_least"): SHARE, ("goal_damping", "at_least"): SHARE, ("goal_damping", "at_most"): SHARE, ("goal_damping", "target"): SHARE,
     "at_least_percent": PERCENT, "at_most_percent": PERCENT,
@@ -236,7 +239,7 @@ def anchored(document, kind, folder):
         holders += [(i, "file") for i in out.get("include", [])]
     if kind == "study":
         holders += [(out, "model")] + [(r, "model") for r in out.get("references", {}).values()]
-        holders += [(m, "file") for m in out.get("measurements", {}).values()]
+        holders += [(m, "file") for tables in ("measurements", "catalogues") for m in out.get(tables, {}).values()]
         holders += [(g, "profile") for g in out.get("goals", []) + out.get("responses", [])]
         if "aircraft" not in out and "model" in out and ((folder / out["model"]).parent / "aircraft.json").is_file():
             out["aircraft"] = str(((folder / out["model"]).parent / "aircraft.json").resolve())

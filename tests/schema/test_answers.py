@@ -100,6 +100,8 @@ LINES = {
         ["slider.json", "--drive", "bore=-0.1:0.11715:5"],
         ["tests/models/apart.json", "--drive", "root=0:0.1:2"],
         ["tests/models/driven_rod.json", "--drive", "pivot=0:30*deg:3", "--frequencies", "--hold", "servo"],
+        ["tests/models/driven_arm.json", "--drive", "shoulder=0:0.3:3", "--drive", "elbow=0:0.4:3", "--hold", "elbow=elbow_servo"],
+        ["gantry.json", "--drive", "bridge=0:0.2:2", "--drive", "hoist=0:0.1:2", "--grid"],
     ],
 }
 # What is of studies alone, or of several commands, and not seen in these lines as null, absent, or as something else.
@@ -116,6 +118,13 @@ STANDING = {
     "bodies": [{"name": "bob", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 1]}],
     "joints": [{"name": "pin", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0]}],
     "springs": [{"name": "k", "type": "torsion", "joint": "pin", "stiffness_n_m_per_rad": 8}],
+}
+# A bridge that goes along x, and a load that it lifts.
+GANTRY = {
+    "format": "modetune-model/1", "name": "Gantry", "dimension": 2, "gravity_m_per_s2": [0, -9.81],
+    "bodies": [{"name": name, "mass_kg": 3, "inertia_kg_m2": 0.1, "centre": [0, at]} for name, at in (("bridge", 0), ("load", -1))],
+    "joints": [{"name": "bridge", "type": "prismatic", "bodies": ["ground", "bridge"], "at": [0, 0], "axis": [1, 0]},
+               {"name": "hoist", "type": "prismatic", "bodies": ["bridge", "load"], "at": [0, -1], "axis": [0, 1]}],
 }
 # A crank of 0.1 m, drawn upright, a rod of 0.3 m and a piston along x.
 SLIDER = {
@@ -245,7 +254,7 @@ class Answers(unittest.TestCase):
         for name in ("tests", "problems", "studies"):
             (cls.folder / name).symlink_to(SOURCE / name)
         for name, model in (("link", large.link(100)), ("loop", loop()), ("standing", STANDING), ("cranks", CRANKS),
-                            ("slider", SLIDER), ("shaken", SHAKEN), ("one", ONE), ("free", FREE), ("profile", PROFILE),
+                            ("slider", SLIDER), ("gantry", GANTRY), ("shaken", SHAKEN), ("one", ONE), ("free", FREE), ("profile", PROFILE),
                             ("along", {**PROFILE, "axis": "x"}), ("about", ABOUT), ("wheel", WHEEL)):
             (cls.folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
         cls.answers = {command: [cls.printed(command, line) for line in lines] for command, lines in LINES.items()}

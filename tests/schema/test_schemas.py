@@ -82,7 +82,9 @@ def main():
         checked += 1
         if kind != "result":
             originals.append((path, kind, "as it is", document))
-            jobs += [(path, kind, document, *how) for how in changes(document)]
+            # the parameters that a repeat or an include needs are looked for before anything else is read
+            apart = {"repeat", "include"} & set(document)
+            jobs += [(path, kind, document, *how) for how in changes(document) if not (apart and how[0][:1] == ("parameters",))]
     step = max(1, len(jobs) // int(os.environ.get("MT_MUTANTS", "15000" if "MT_EVERY" in os.environ else "1500")))  # evenly thinned where there are many
     # a file of another format is not read on: the verdicts agree, but there is nothing to compare
     jobs = originals + [(path, kind, f"{'/'.join(map(str, where))}: {change}", changed(document, where, change))
