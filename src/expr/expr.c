@@ -100,7 +100,7 @@ bool mt_expr_reserved(const char *name)
 {
     for (int i = 0; i < N_NAMES; i++) {
         if (strcmp(name, reserved_names[i]) == 0) {
-            return true;
+            return i >= N_FUNCTIONS || function_ops[i] != MT_OP_IF;
         }
     }
     return false;
@@ -675,11 +675,11 @@ static mt_status parse_name(parser *p)
         return emit(p, MT_OP_CONST, (int)kind, value);
     }
     mt_op op = MT_OP_CONST;
-    if (find_function(name, length, &op)) {
+    const int param = find_parameter(p, name, length);
+    if (find_function(name, length, &op) && (op != MT_OP_IF || param < 0)) {
         return mt_fail(p->err, MT_E_INPUT, "at character %d: function \"%.*s\" without \"(\"",
                        character(p, from), (int)length, name);
     }
-    const int param = find_parameter(p, name, length);
     if (param < 0) {
         return unknown_name(p, from, length, false);
     }

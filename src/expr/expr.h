@@ -128,7 +128,8 @@ mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err)
 /* True where the expression has no parameter; *value is then its value, which may be infinite
  * or NaN ("1/0"). */
 bool mt_expr_is_constant(const mt_expr *e, double *value);
-/* True where the name is that of a function or a constant. */
+/* True where the name is that of a function or a constant, and no parameter can have it: "if"
+ * can, where no "(" follows. */
 bool mt_expr_reserved(const char *name);
 /* Names of all functions and constants, for suggestions; *n their number. */
 const char *const *mt_expr_names(int *n);

@@ -3,6 +3,7 @@
 #include "inspect/modes.h"
 
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -601,9 +602,10 @@ static mt_status solve_modes(mt_modes_view *v, mt_err *err)
         return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list,
                                        err);
     }
-    MT_TRY(q->damped && q->count > 0 ? solve_few_damped(v, &is, why, err)
-                                     : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs,
-                                                              s->at, want, &v->l, err));
+    const bool few = q->damped && q->count > 0 && q->count < INT_MAX / 2;
+    MT_TRY(few ? solve_few_damped(v, &is, why, err)
+               : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l,
+                                        err));
     if (v->l != NULL && !is) {
         mt_lowest_delete(v->l);
         v->l = NULL;

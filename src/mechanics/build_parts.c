@@ -791,8 +791,8 @@ static void build_seat(mt_builder *b, const mt_joint *joint, int of, const int f
     if (joints == NULL) {
         return;
     }
-    const int carrier = sys->joints[of].body[0];
     sys->joints = joints;
+    const int carrier = joints[of].body[0];
     mt_system_joint seat = {.name = sys->bodies[carrier].name,
                             .type = MT_JOINT_ORIENTATION,
                             .first = sys->n_constraints,

@@ -591,14 +591,22 @@ static void note_places(mt_model_reader *mr)
     qsort(list.addrs, (size_t)list.n, sizeof *list.addrs, compare_addrs);
     mt_json_locates(mr->r.doc, list.n, list.addrs, lines, columns);
     for (int i = 0; i < list.n; i++) {
-        const char *const in = mt_json_file(mr->r.doc, list.addrs[i]);
         m->places[i] = (mt_place){.addr = list.addrs[i],
                                   .line = lines[i],
                                   .column = columns[i],
-                                  .file = in == NULL ? NULL : mt_arena_strdup(&m->mem, in)};
+                                  .file = mt_json_file(mr->r.doc, list.addrs[i])};
     }
     m->n_places = list.n;
     mt_arena_rewind(&m->mem, mark);
+    /* the document's names of files, behind what was scratch; neighbours share theirs */
+    const char *last = NULL;
+    for (int i = 0; i < m->n_places; i++) {
+        mt_place *const p = &m->places[i];
+        if (p->file != NULL && (last == NULL || strcmp(p->file, last) != 0)) {
+            last = mt_arena_strdup(&m->mem, p->file);
+        }
+        p->file = p->file == NULL ? NULL : last;
+    }
 }
 
 /* Set parameters of the model as if its file gave these values. */

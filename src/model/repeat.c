@@ -6,11 +6,10 @@
 #include <string.h>
 
 static const mt_key POLAR[] = {
-    MT_M_JUST(
-        "axis", LIST, false, AXIS,
-        "Three dimensions: direction of the axis that copies are turned about, three "
-        "plain numbers. In two dimensions it is out of the plane.",
-        .schema = MT_DIRECTION),
+    MT_M_JUST("axis", LIST, false, AXIS,
+              "Three dimensions: direction of the axis that copies are turned about, three "
+              "plain numbers. In two dimensions it is out of the plane.",
+              .schema = MT_DIRECTION),
     MT_M_JUST("about", TEXT_OR_LIST, false, POINT,
               "Where the axis is: the name of a point, or coordinates. Absent: the origin.",
               .schema = "\"allOf\": [{" MT_I_OF("position") "}]"),

@@ -472,7 +472,8 @@ static int widest_input(const mt_enclosure *e, const mt_enclosure_coefficient *c
     int widest = -1;
     double most = 0.0;
     for (int k = 0; k < e->n_inputs; k++) {
-        const double share = (hi[k] - lo[k]) / (e->upper[k] - e->lower[k]);
+        const double range = e->upper[k] - e->lower[k]; /* 0: a column of one value */
+        const double share = range > 0.0 ? (hi[k] - lo[k]) / range : 0.0;
         if (mt_program_has_input(of_node, k) && share > most) {
             most = share;
             widest = k;

@@ -179,6 +179,13 @@ static double field_number(csv *t, const field *f)
     return number;
 }
 
+/* A column whose first field begins with a letter holds texts: materials, suppliers. */
+static bool is_text(const field *f)
+{
+    const char first = *f->text;
+    return (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
+}
+
 /* The line of names. *names_at: the column of the rows' names, -1: none. */
 static int read_header(csv *t, field *fields, int *names_at)
 {
@@ -219,6 +226,7 @@ static void read_lines(csv *t, int lines)
     const int n = read_header(t, fields, &names_at);
     c->number = mt_arena_f64(mem, (size_t)c->columns.count, (size_t)lines);
     c->row = mt_arena_alloc(mem, (size_t)lines, sizeof *c->row);
+    c->text = mt_arena_alloc(mem, (size_t)c->columns.count, sizeof *c->text);
     mt_name *const names = mt_arena_alloc(mem, (size_t)lines, sizeof *names);
     while (n > 0 && !mt_arena_failed(mem) && next_record(t)) {
         const field start = {t->at, t->line, 1};
@@ -234,10 +242,12 @@ static void read_lines(csv *t, int lines)
         for (int i = 0, k = 0; i < n; i++) {
             if (i == names_at) {
                 names[c->n_rows] = (mt_name){.s = fields[i].text, .addr = c->file.addr};
-            } else {
-                c->number[((ptrdiff_t)c->n_rows * c->columns.count) + k++] =
-                    field_number(t, &fields[i]);
+                continue;
             }
+            c->text[k] = c->n_rows == 0 ? is_text(&fields[i]) : c->text[k];
+            c->number[((ptrdiff_t)c->n_rows * c->columns.count) + k] =
+                c->text[k] ? nan("") : field_number(t, &fields[i]);
+            k++;
         }
         c->row[c->n_rows++] = c->file.addr;
     }
@@ -600,6 +610,12 @@ static int map_columns(mt_study_check *c, const mt_variable *v, const mt_catalog
         if (column == MT_ABSENT) {
             mt_check_unknown_name(c, v->columns.items[i], "column", from->columns.items,
                                   from->columns.count, sizeof *from->columns.items);
+            return 0;
+        }
+        if (from->text != NULL && from->text[column]) {
+            mt_diag_error(c->diags, v->parameters.items[i].addr,
+                          "column \"%s\" of \"%s\" holds texts, not numbers",
+                          from->columns.items[column].s, from->name.s);
             return 0;
         }
         out[i] = (set_by){column, v->parameters.items[i]};

@@ -18,7 +18,9 @@ typedef struct mt_catalogue {
     mt_name_list names;        /* of rows; count 0: none are given */
     double *tolerance_percent; /* [columns.count] NaN: none; NULL: none is given */
     int n_rows;
-    double *number; /* [n_rows x columns.count] as written; NaN: wrong, which is noted */
+    /* [n_rows x columns.count] as written; NaN: wrong, which is noted, or of a column of texts */
+    double *number;
+    bool *text;     /* [columns.count] of a table; NULL: all have numbers */
     mt_addr *row;   /* [n_rows] addresses */
     bool wrong;     /* what is wrong has been noted */
     mt_addr addr;

@@ -36,6 +36,13 @@ class Modes(CliTest):
         self.assertIn('configuration "own" has its own value of "n"', self.expect(0, "modes", path, "--set", "n=4").stderr)
         self.assertIn("the condition of an if() depends on what varies here", self.expect(2, "sensitivity", path, "--parameters", "n").stderr)
 
+    def test_a_parameter_may_be_called_if(self):
+        """As in files of 1.0.0, which had no cases: it is one where no "(" follows."""
+        path = self.write("if.json", CASES.replace('"n"', '"if"').replace("n*q", "if*q"))
+        for sets, omega in ((["if=4"], 3), (["k=25", "if=2"], 5)):
+            got = self.json_of("modes", path, "-c", "two", *(a for s in sets for a in ("--set", s)))
+            self.assertAlmostEqual(2 * math.pi * got["modes"][0]["frequency_hz"], omega, delta=TOL)
+
     def test_json_of_one_configuration_is_an_object(self):
         got = self.json_of("modes", self.model, "-c", "held")
         self.assertEqual(got["configuration"], "held")

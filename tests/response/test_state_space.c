@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* State spaces: closed forms, the responses of random problems, and what modes that are left
  * out leave. */
+#include <limits.h>
+
 #include "response/response_fixture.h"
 #include "response/state_space.h"
-
-#include <limits.h>
 
 static const double TOL = 1e-9;
 
