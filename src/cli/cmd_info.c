@@ -870,7 +870,7 @@ static mt_status show_configuration_info(const mt_args *args, view *v, const sin
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         write_info_text(to->out, v, to->last);
-        return MT_OK;
+        return mt_arena_check(&v->mem, err);
     }
     return MT_OK;
 }

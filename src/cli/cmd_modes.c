@@ -346,7 +346,6 @@ static void print_energies(const mt_modes_view *v, mt_text *out)
 {
     mt_arena mem;
     double *percent = NULL;
-    double off = 0.0;
     if (mt_arena_init(&mem, 0, NULL) != MT_OK) {
         out->failed = true;
         return;
@@ -357,6 +356,7 @@ static void print_energies(const mt_modes_view *v, mt_text *out)
     } else {
         print_kinetic(v, rows, &mem, percent, out);
         print_strain(v, rows, &mem, percent, out);
+        double off = 0.0;
         for (int i = 0; i < v->shown; i++) {
             off = fmax(off, fabs(rows[i].kinetic_sum - (100.0 * rows[i].modes)));
             off = fmax(off, isfinite(rows[i].strain_sum)
@@ -575,10 +575,10 @@ static mt_status csv_view(sink *to, const mt_modes_view *v)
     return MT_OK;
 }
 
-static mt_status show_configuration_modes(void *context, mt_loaded_model *s, int c, int *code,
-                                          mt_err *err)
+static mt_status show_configuration_modes(void *context, mt_loaded_model *s, int c,
+                                          mt_cli_shown *shown, mt_err *err)
 {
-    (void)code;
+    (void)shown;
     sink *const to = context;
     const mt_args *const args = to->args;
     const mt_modes_question question = {

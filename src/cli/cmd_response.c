@@ -553,9 +553,9 @@ typedef struct sink {
 } sink;
 
 static mt_status show_configuration_response(void *context, mt_loaded_model *s, int c,
-                                             int *code, mt_err *err)
+                                             mt_cli_shown *shown, mt_err *err)
 {
-    (void)code;
+    (void)shown;
     sink *const to = context;
     mt_response_view v = {.question = NULL};
     mt_status rc = mt_response_view_take(s, c, &to->question, &v, err);

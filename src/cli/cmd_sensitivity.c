@@ -168,10 +168,10 @@ typedef struct sink {
     mt_table table; /* CSV */
 } sink;
 
-static mt_status show_configuration_slopes(void *context, mt_loaded_model *s, int c, int *code,
-                                           mt_err *err)
+static mt_status show_configuration_slopes(void *context, mt_loaded_model *s, int c,
+                                           mt_cli_shown *shown, mt_err *err)
 {
-    (void)code;
+    (void)shown;
     sink *const to = context;
     mt_sensitivity_view v = {.s = NULL};
     mt_status rc = mt_sensitivity_view_take(s, c, &to->question, &v, err);

@@ -424,8 +424,8 @@ static void warn_range(const mt_sweep_view *v)
     }
 }
 
-static mt_status show_configuration_sweep(void *context, mt_loaded_model *s, int c, int *code,
-                                          mt_err *err)
+static mt_status show_configuration_sweep(void *context, mt_loaded_model *s, int c,
+                                          mt_cli_shown *shown, mt_err *err)
 {
     sink *const to = context;
     mt_sweep_view v = {.question = NULL};
@@ -436,7 +436,7 @@ static mt_status show_configuration_sweep(void *context, mt_loaded_model *s, int
     }
     if (rc == MT_OK) {
         warn_range(&v);
-        *code = mt_exit_worse(*code, write_missing(s, &v));
+        shown->code = mt_exit_worse(shown->code, write_missing(s, &v));
         switch (to->args->format) {
         case MT_FORMAT_JSON:
             rc = mt_sweep_put(&v, &to->w, err);

@@ -119,7 +119,7 @@ int mt_cli_each(const mt_args *args, mt_loaded_model *s, mt_json_writer *w, mt_c
 {
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
-    int code = MT_EXIT_DONE;
+    mt_cli_shown shown = {MT_EXIT_DONE};
     if (list) {
         mt_json_open(w, NULL, '[');
     }
@@ -127,9 +127,9 @@ int mt_cli_each(const mt_args *args, mt_loaded_model *s, mt_json_writer *w, mt_c
         const int c = s->configurations[i];
         mt_err err = {.code = MT_OK};
         mt_loaded_model_warn_overridden(s, c);
-        const mt_status rc = show(context, s, c, &code, &err);
+        const mt_status rc = show(context, s, c, &shown, &err);
         if (rc != MT_OK) {
-            code = mt_exit_worse(code, mt_cli_failed(rc, &err));
+            shown.code = mt_exit_worse(shown.code, mt_cli_failed(rc, &err));
         }
         if (rc != MT_OK && json) {
             put_failed(w, mt_loaded_model_configuration(s, c), &err);
@@ -138,7 +138,7 @@ int mt_cli_each(const mt_args *args, mt_loaded_model *s, mt_json_writer *w, mt_c
     if (list) {
         mt_json_close(w);
     }
-    return json ? mt_exit_worse(code, mt_cli_json_done(w)) : code;
+    return json ? mt_exit_worse(shown.code, mt_cli_json_done(w)) : shown.code;
 }
 
 void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)

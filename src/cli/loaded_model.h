@@ -30,8 +30,12 @@ void mt_loaded_model_warn_dropped(const mt_loaded_model *s, int c, const char *o
 /* Close a JSON output. Returns MT_EXIT_DONE, or reports a failure and returns its exit
  * status. */
 int mt_cli_json_done(mt_json_writer *w);
-/* Shows one configuration; *code gets worse where there is more to tell than its failure. */
-typedef mt_status (*mt_cli_show)(void *context, mt_loaded_model *s, int c, int *code,
+/* How it ended so far. */
+typedef struct mt_cli_shown {
+    int code; /* exit status */
+} mt_cli_shown;
+/* Shows one configuration; shown->code gets worse where there is more to tell than its failure. */
+typedef mt_status (*mt_cli_show)(void *context, mt_loaded_model *s, int c, mt_cli_shown *shown,
                                  mt_err *err);
 /* Shows each configuration with the warnings that all commands have; the failure of one does
  * not hide the others. In JSON a list of what they write to w, without -c. Returns the exit

@@ -927,12 +927,13 @@ static const char **state_names(const mt_response *r, const mt_state_space *s, m
     return name;
 }
 
-/* Rows of an m x n matrix, column-major. */
-static mt_matrix_row *matrix_rows(double *values, int m, int n, mt_arena *mem)
+/* The m rows of a matrix by columns, of which `of` is the first. */
+static mt_matrix_row *matrix_rows(mt_matrix_row of, int m, mt_arena *mem)
 {
     mt_matrix_row *const row = mt_arena_alloc(mem, (size_t)m, sizeof *row);
     for (int i = 0; row != NULL && i < m; i++) {
-        row[i] = (mt_matrix_row){values + i, n, m};
+        row[i] = of;
+        row[i].value += i;
     }
     return row;
 }
@@ -1013,21 +1014,22 @@ static mt_status state_space_row_of(mt_response *r, int modes, double from, doub
 {
     mt_state_space s;
     MT_TRY(mt_response_state_space(r, modes, to, &s, err));
-    *out = (mt_state_space_row){.modes = s.modes,
-                                .residual_shapes = s.residual,
-                                .states = state_names(r, &s, &r->mem),
-                                .n_states = s.n,
-                                .inputs = r->ports.in,
-                                .n_inputs = s.n_in,
-                                .outputs = r->ports.out,
-                                .n_outputs = s.n_out,
-                                .a = matrix_rows(s.a, s.n, s.n, &r->mem),
-                                .b = matrix_rows(s.b, s.n, s.n_in, &r->mem),
-                                .c = matrix_rows(s.c, s.n_out, s.n, &r->mem),
-                                .d = matrix_rows(s.d, s.n_out, s.n_in, &r->mem),
-                                .viscous_for_loss_factors = s.lossy,
-                                .from_hz = from / TWO_PI,
-                                .to_hz = to / TWO_PI};
+    *out = (mt_state_space_row){
+        .modes = s.modes,
+        .residual_shapes = s.residual,
+        .states = state_names(r, &s, &r->mem),
+        .n_states = s.n,
+        .inputs = r->ports.in,
+        .n_inputs = s.n_in,
+        .outputs = r->ports.out,
+        .n_outputs = s.n_out,
+        .a = matrix_rows((mt_matrix_row){s.a, s.n, s.n}, s.n, &r->mem),
+        .b = matrix_rows((mt_matrix_row){s.b, s.n_in, s.n}, s.n, &r->mem),
+        .c = matrix_rows((mt_matrix_row){s.c, s.n, s.n_out}, s.n_out, &r->mem),
+        .d = matrix_rows((mt_matrix_row){s.d, s.n_in, s.n_out}, s.n_out, &r->mem),
+        .viscous_for_loss_factors = s.lossy,
+        .from_hz = from / TWO_PI,
+        .to_hz = to / TWO_PI};
     MT_TRY(mt_arena_check(&r->mem, err));
     return compare(r, &s, from, to, out, err);
 }

@@ -974,8 +974,8 @@ void mt_json_locate(const mt_json *doc, mt_addr addr, int *line, int *column)
 
 /* An address in the order of the text that it stands in. */
 typedef struct entry {
-    int order;        /* of the document */
     long long offset; /* -1: no place */
+    int order;        /* of the document */
     int index;
 } entry;
 
@@ -1236,6 +1236,26 @@ mt_status mt_json_status(const mt_json *doc, const char *file, mt_err *err)
 
 /* A document made of others. */
 
+/* The notes of a part that is made of others itself, behind those there are. */
+static void take_notes(mt_json *whole, const made *of, int first)
+{
+    made *const to = whole->made;
+    for (int k = 0; k < of->n_notes; k++) {
+        const note *const n = &of->notes[k];
+        to->notes[first + k] = (note){.text = mt_arena_strdup(&whole->mem, n->text),
+                                      .under = n->under < 0 ? -1 : n->under + first};
+    }
+    to->n_notes += of->n_notes;
+}
+
+/* A document with a text of its own. */
+static void take_document(mt_json *whole, mt_json *doc, const char *file)
+{
+    made *const to = whole->made;
+    to->docs[to->n_docs] = doc;
+    to->files[to->n_docs++] = file == NULL ? NULL : mt_arena_strdup(&whole->mem, file);
+}
+
 /* Add what the parts consist of to the lists: documents with texts of their own. first: where
  * those of each part begin, in documents and in notes. */
 static void take_documents(mt_json *whole, const mt_json_parts *parts, int *first_doc,
@@ -1250,18 +1270,14 @@ static void take_documents(mt_json *whole, const mt_json_parts *parts, int *firs
         const made *const of = parts->docs[i]->made;
         first_doc[i] = to->n_docs;
         first_note[i] = to->n_notes;
-        for (int k = 0; of != NULL && k < of->n_notes; k++) {
-            const note *const n = &of->notes[k];
-            to->notes[first_note[i] + k] =
-                (note){.text = mt_arena_strdup(&whole->mem, n->text),
-                       .under = n->under < 0 ? -1 : n->under + first_note[i]};
+        if (of == NULL) {
+            take_document(whole, parts->docs[i], parts->files[i]);
+            continue;
         }
-        to->n_notes += of == NULL ? 0 : of->n_notes;
-        for (int k = 0; k < (of == NULL ? 1 : of->n_docs); k++) {
-            const char *const own = of == NULL ? NULL : of->files[k];
-            const char *const file = own == NULL ? parts->files[i] : own;
-            to->docs[to->n_docs] = of == NULL ? parts->docs[i] : of->docs[k];
-            to->files[to->n_docs++] = file == NULL ? NULL : mt_arena_strdup(&whole->mem, file);
+        take_notes(whole, of, first_note[i]);
+        for (int k = 0; k < of->n_docs; k++) {
+            take_document(whole, of->docs[k],
+                          of->files[k] == NULL ? parts->files[i] : of->files[k]);
         }
     }
 }
@@ -1390,7 +1406,7 @@ mt_status mt_json_become(mt_json *doc, const char *text, size_t length,
     mt_status rc = old == NULL ? mt_fail_memory(err) : mt_json_parse(text, length, &whole, err);
     const bool again = rc == MT_E_INPUT;
     rc = again ? mt_fail(err, MT_E_INTERNAL, "a text that was made is not JSON") : rc;
-    rc = rc == MT_OK ? make_of(whole, parts, err) : rc;
+    rc = rc == MT_OK && whole != NULL ? make_of(whole, parts, err) : rc;
     for (int i = 1; i < parts->n_docs; i++) {
         made *const of = parts->docs[i]->made;
         if (rc == MT_OK && of != NULL) {
@@ -1400,7 +1416,7 @@ mt_status mt_json_become(mt_json *doc, const char *text, size_t length,
             mt_json_delete(parts->docs[i]);
         }
     }
-    if (rc != MT_OK) {
+    if (rc != MT_OK || old == NULL || whole == NULL) {
         if (whole != NULL) {
             whole->made = NULL;
         }

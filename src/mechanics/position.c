@@ -397,7 +397,7 @@ static void set_out(walk *w, int lead)
         w->drive[i].from = w->at->drive[i];
         w->drive[i].goal = creal(mt_data_scalar(w->data, sys->drives[i].position, 0.0));
         const double way = fabs(w->drive[i].goal - w->drive[i].from) / drive_unit(sys, i);
-        if (lead < 0 && !(way <= longest)) {
+        if (lead < 0 && (w->lead < 0 || !(way <= longest))) {
             longest = way;
             w->lead = i;
         }

@@ -245,7 +245,7 @@ static mt_cx weight_of(const rest_place *p, int i, int axis, const mt_cx arm[3])
 /* True where equation i of the joint acts: that of a drive does not where a spring holds it. */
 static bool acts(const mt_system *sys, int i, int joint)
 {
-    return sys->constraints[i].joint == joint && i < sys->n_constraints - sys->n_trims;
+    return i < sys->n_constraints - sys->n_trims && sys->constraints[i].joint == joint;
 }
 
 static mt_cx multiplier(const rest_place *p, int i)

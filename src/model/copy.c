@@ -336,9 +336,10 @@ static const char *term_text(mt_maker *m, mt_term x, const mt_unit *unit)
         return x.s;
     }
     (void)mt_json_format_shortest(x.v, buffer);
-    return unit == NULL || unit->constant == NULL
-               ? mt_arena_strdup(&m->mem, buffer)
-               : mt_arena_printf(&m->mem, "%s*%s", buffer, unit->constant);
+    if (unit == NULL || unit->constant == NULL) {
+        return mt_arena_strdup(&m->mem, buffer);
+    }
+    return mt_arena_printf(&m->mem, "%s*%s", buffer, unit->constant);
 }
 
 static mt_term product(mt_maker *m, mt_term a, mt_term b)
@@ -355,40 +356,57 @@ static mt_term product(mt_maker *m, mt_term a, mt_term b)
                                           term_text(m, b, NULL))};
 }
 
+static bool is_zero(mt_term x)
+{
+    return x.s == NULL && x.v == 0.0;
+}
+
+/* The sum below where it is a number. */
+static bool plain_sum(int n, const mt_term *factor, const mt_term *x, double *v)
+{
+    *v = 0.0;
+    for (int i = 0; i < n; i++) {
+        if (is_zero(factor[i]) || is_zero(x[i])) {
+            continue;
+        }
+        if (factor[i].s != NULL || x[i].s != NULL) {
+            return false;
+        }
+        *v += factor[i].v * x[i].v;
+    }
+    return true;
+}
+
+/* A text in parentheses; NULL: memory is out, which its arena knows. */
+static void add_bracketed(mt_text *t, const char *s)
+{
+    mt_text_add(t, "(");
+    mt_text_add(t, s == NULL ? "" : s);
+    mt_text_add(t, ")");
+}
+
 /* factor[0] x[0] + factor[1] x[1] ..., numbers among x in this unit. */
 static mt_term sum_of(mt_maker *m, int n, const mt_term *factor, const mt_term *x,
                       const mt_unit *unit)
 {
-    bool plain = true;
     double v = 0.0;
-    for (int i = 0; i < n; i++) {
-        const bool zero =
-            (factor[i].s == NULL && factor[i].v == 0.0) || (x[i].s == NULL && x[i].v == 0.0);
-        plain = plain && (zero || (factor[i].s == NULL && x[i].s == NULL));
-        v += zero ? 0.0 : factor[i].v * x[i].v;
-    }
-    if (plain) {
+    if (plain_sum(n, factor, x, &v)) {
         return (mt_term){.v = v};
     }
     mt_text t = {0};
     for (int i = 0; i < n; i++) {
-        const bool number = factor[i].s == NULL;
-        if ((number && factor[i].v == 0.0) || (x[i].s == NULL && x[i].v == 0.0)) {
+        if (is_zero(factor[i]) || is_zero(x[i])) {
             continue;
         }
+        const bool number = factor[i].s == NULL;
         const bool minus = number && factor[i].v == -1.0;
-        const bool one = minus || (number && factor[i].v == 1.0);
-        mt_text_add(&t, minus ? "-" : t.length > 0 ? "+" : "");
-        if (!one) {
-            const char *const f = term_text(m, factor[i], NULL);
-            mt_text_add(&t, "(");
-            mt_text_add(&t, f == NULL ? "" : f);
-            mt_text_add(&t, ")*");
+        const char *const plus = t.length > 0 ? "+" : "";
+        mt_text_add(&t, minus ? "-" : plus);
+        if (!minus && !(number && factor[i].v == 1.0)) {
+            add_bracketed(&t, term_text(m, factor[i], NULL));
+            mt_text_add(&t, "*");
         }
-        const char *const s = term_text(m, x[i], unit);
-        mt_text_add(&t, "(");
-        mt_text_add(&t, s == NULL ? "" : s);
-        mt_text_add(&t, ")");
+        add_bracketed(&t, term_text(m, x[i], unit));
     }
     const mt_term out = {.s = t.s == NULL ? "0" : mt_arena_strdup(&m->mem, t.s)};
     if (t.failed || out.s == NULL) {
@@ -584,7 +602,7 @@ static void put_matrix(const mt_copy *c, const char *name, mt_addr addr)
     mt_addr row[ORDER];
     mt_items rows = mt_json_items(c->doc, addr);
     bool ok = rows.count == ORDER;
-    for (int i = 0; ok && mt_items_next(&rows); i++) {
+    for (ptrdiff_t i = 0; ok && mt_items_next(&rows); i++) {
         row[i] = rows.at;
         ok = nums_of(c, rows.at, ORDER, ORDER, false, &K[ORDER * i], &at[ORDER * i]) == ORDER;
     }

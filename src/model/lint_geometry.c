@@ -310,10 +310,9 @@ static void lint_ends(mt_lint *j, int i, const mt_link *l)
                        l->name.addr, mt_arena_printf(j->out->mem, "/links/%d", i));
 }
 
-void mt_lint_structure(mt_lint *j)
+static void lint_bodies_and_links(mt_lint *j)
 {
     const mt_model *const m = j->model;
-    int dampers = 0;
     for (int i = 0; i < m->n_bodies; i++) {
         const mt_body *const b = &m->bodies[i];
         const mt_item item = {"body", "bodies", i, b->name.s};
@@ -327,6 +326,13 @@ void mt_lint_structure(mt_lint *j)
             lint_hinge_axis(j, i, &m->links[i]);
         }
     }
+}
+
+void mt_lint_structure(mt_lint *j)
+{
+    const mt_model *const m = j->model;
+    int dampers = 0;
+    lint_bodies_and_links(j);
     for (int i = 0; i < m->n_springs; i++) {
         const mt_spring *const s = &m->springs[i];
         const mt_item item = {s->damper ? "damper" : "spring",

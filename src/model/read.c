@@ -534,6 +534,19 @@ static void add_place(place_list *list, mt_addr addr)
     }
 }
 
+static void add_configuration_places(const mt_model *m, int c, place_list *list)
+{
+    const mt_configuration *const own = &m->configurations[c];
+    for (int i = 0; i < own->n_drives; i++) {
+        const mt_drive *const drive = &own->drives[i];
+        const bool here = drive->owner == c;
+        add_place(list, here ? drive->addr : MT_NO_ADDR);
+        add_place(list, here && drive->trim ? drive->trim_name.addr : MT_NO_ADDR);
+    }
+    add_place(list,
+              own->damping.given && !own->damping.inherited ? own->damping.addr : MT_NO_ADDR);
+}
+
 static void add_places(const mt_model *m, place_list *list)
 {
     for (int i = 0; i < m->n_nums; i++) {
@@ -556,15 +569,7 @@ static void add_places(const mt_model *m, place_list *list)
         add_place(list, m->loads[i].at.given ? m->loads[i].at.addr : MT_NO_ADDR);
     }
     for (int c = 0; c < m->n_configurations; c++) {
-        const mt_configuration *const own = &m->configurations[c];
-        for (int i = 0; i < own->n_drives; i++) {
-            const mt_drive *const drive = &own->drives[i];
-            const bool here = drive->owner == c;
-            add_place(list, here ? drive->addr : MT_NO_ADDR);
-            add_place(list, here && drive->trim ? drive->trim_name.addr : MT_NO_ADDR);
-        }
-        add_place(list, own->damping.given && !own->damping.inherited ? own->damping.addr
-                                                                      : MT_NO_ADDR);
+        add_configuration_places(m, c, list);
     }
 }
 

@@ -81,20 +81,20 @@ typedef struct mt_certify {
      * NULL: all bands are free */
     const int *same_as;
     int n_limits;
-    const mt_certify_limit *limits;
     int n_pairs;
+    const mt_certify_limit *limits;
     const mt_certify_pair *pairs;
     const mt_program *program; /* of the bounds; NULL where there are none */
-    int n_bounds;
     const mt_certify_bound *bounds;
+    int n_bounds;
     int n; /* inputs */
     const double *lower;
     const double *upper;
     const int *n_catalogue;         /* [n] 0: continuous; NULL: all are */
     const double *const *catalogue; /* [n] ascending values */
-    int n_rows;
     const mt_certify_rows *rows; /* [n_rows] of inputs with a catalogue, each of its column */
     const mt_certify_cap *cap;   /* NULL: any value of the objective */
+    int n_rows;
     /* stop at the first design that is found; nothing is proven then */
     bool any;
     /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */

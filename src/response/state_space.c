@@ -245,7 +245,7 @@ static mt_status reduce(const mt_basis *basis, real_parts *p, int keep, mt_arena
     MT_TRY(residual_shapes(basis, p, keep, mem, &out->residual, &v, err));
     const int r = keep + out->residual;
     const ptrdiff_t n = p->n;
-    double *const t = mt_arena_f64(mem, (size_t)n, (size_t)(r + massless));
+    double *const t = mt_arena_f64(mem, (size_t)n, (size_t)r + (size_t)massless);
     MT_TRY(mt_arena_check(mem, err));
     for (ptrdiff_t i = 0; i < keep; i++) {
         t[i + (i * n)] = 1.0;
@@ -424,26 +424,25 @@ static mt_status add_rest(const real_parts *p, places at, double highest, mt_sta
     return MT_OK;
 }
 
-static mt_status fill_readings(const real_parts *p, places at, double highest,
-                               mt_state_space *s, mt_err *err)
+/* Row o of C and D, but for what follows the inputs at once. */
+static mt_status fill_reading(const real_parts *p, places at, ptrdiff_t o, mt_state_space *s,
+                              mt_err *err)
 {
     const ptrdiff_t out = s->n_out;
-    for (ptrdiff_t o = 0; o < out; o++) {
-        for (ptrdiff_t k = 0; k < p->r; k++) {
-            s->c[o + (k * out)] += p->s[0][o + (k * out)];
-            s->c[o + ((at.rate + k) * out)] += p->s[1][o + (k * out)];
-            add_rate(s, o, p->s[2][o + (k * out)], at.rate + k);
-        }
-        for (ptrdiff_t d = 0; d < s->massless; d++) {
-            const ptrdiff_t q = (p->r + d) * out;
-            s->c[o + ((at.massless + d) * out)] += p->s[0][o + q];
-            add_rate(s, o, p->s[1][o + q], at.massless + d);
-            if (p->s[2][o + q] != 0.0) {
-                MT_TRY(add_massless_acceleration(p, at, s, o, p->s[2][o + q], d, err));
-            }
+    for (ptrdiff_t k = 0; k < p->r; k++) {
+        s->c[o + (k * out)] += p->s[0][o + (k * out)];
+        s->c[o + ((at.rate + k) * out)] += p->s[1][o + (k * out)];
+        add_rate(s, o, p->s[2][o + (k * out)], at.rate + k);
+    }
+    for (ptrdiff_t d = 0; d < s->massless; d++) {
+        const ptrdiff_t q = (p->r + d) * out;
+        s->c[o + ((at.massless + d) * out)] += p->s[0][o + q];
+        add_rate(s, o, p->s[1][o + q], at.massless + d);
+        if (p->s[2][o + q] != 0.0) {
+            MT_TRY(add_massless_acceleration(p, at, s, o, p->s[2][o + q], d, err));
         }
     }
-    return add_rest(p, at, highest, s, err);
+    return MT_OK;
 }
 
 mt_status mt_state_space_make(const mt_basis *basis, int keep, mt_arena *mem,
@@ -476,7 +475,10 @@ mt_status mt_state_space_make(const mt_basis *basis, int keep, mt_arena *mem,
     out->d = mt_arena_f64(mem, (size_t)out->n_out, (size_t)out->n_in);
     MT_TRY(mt_arena_check(mem, err));
     fill_dynamics(&p, at, out);
-    return fill_readings(&p, at, highest, out, err);
+    for (int o = 0; o < out->n_out; o++) {
+        MT_TRY(fill_reading(&p, at, o, out, err));
+    }
+    return add_rest(&p, at, highest, out, err);
 }
 
 mt_status mt_state_space_at(const mt_state_space *s, double w, double complex *h,

@@ -123,16 +123,16 @@ static char separator_of(const char *line)
 {
     static const char known[] = {',', ';', '\t'};
     int most = 0;
-    char best = ',';
+    int best = 0;
     for (int k = 0; k < MT_COUNT(known); k++) {
         int n = 0;
         for (const char *s = line; *s != '\0' && *s != '\n'; s++) {
             n += *s == known[k];
         }
-        best = n > most ? known[k] : best;
+        best = n > most ? k : best;
         most = n > most ? n : most;
     }
-    return best;
+    return known[best];
 }
 
 /* "D [mm]" into name and unit; also "D (mm)", where that is a unit. */

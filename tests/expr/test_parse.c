@@ -157,12 +157,29 @@ static void parse__numbers_are_rounded_correctly(mt_test *t)
     }
 }
 
+typedef struct wrong_text {
+    const char *text;
+    const char *want;
+} wrong_text;
+
+static void expect_problems(mt_test *t, int n, const wrong_text *rows)
+{
+    mt_arena mem;
+    REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
+    for (int i = 0; i < n; i++) {
+        mt_test_row(t, "%s", rows[i].text);
+        mt_expr e;
+        mt_err err = {.code = MT_OK};
+        CHECK_INT(t, parse_text(rows[i].text, &mem, &e, &err), MT_E_INPUT);
+        CHECK_STR(t, err.text, rows[i].want);
+        CHECK_INT(t, parse_text(rows[i].text, &mem, &e, NULL), MT_E_INPUT);
+    }
+    mt_arena_free(&mem);
+}
+
 static void parse__problems_are_named_with_their_place(mt_test *t)
 {
-    static const struct {
-        const char *text;
-        const char *want;
-    } rows[] = {
+    static const wrong_text rows[] = {
         {"", "at character 1: the expression ends where a number, a name or \"(\" is expected"},
         {"x +",
          "at character 4: the expression ends where a number, a name or \"(\" is expected"},
@@ -222,6 +239,14 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
          "at character 3: \"\xE2\x88\x92\" where an operator or the end is expected"},
         {"\xCF\x89 y",
          "at character 1: \"\xCF\x89\" where a number, a name or \"(\" is expected"},
+        {"x\x01", "at character 2: control character where an operator or the end is expected"},
+    };
+    expect_problems(t, MT_COUNT(rows), rows);
+}
+
+static void parse__problems_of_cases_are_named_with_their_place(mt_test *t)
+{
+    static const wrong_text rows[] = {
         {"x < y",
          "at character 3: \"<\" where an operator or the end (comparisons stand in the "
          "condition of if(condition, a, b)) is expected"},
@@ -250,19 +275,8 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
          "at character 10: \"<\" where an operator or the \")\" for "
          "the \"(\" at character 7 is expected"},
         {"if", "at character 1: function \"if\" without \"(\""},
-        {"x\x01", "at character 2: control character where an operator or the end is expected"},
     };
-    mt_arena mem;
-    REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
-    for (int i = 0; i < MT_COUNT(rows); i++) {
-        mt_test_row(t, "%s", rows[i].text);
-        mt_expr e;
-        mt_err err = {.code = MT_OK};
-        CHECK_INT(t, parse_text(rows[i].text, &mem, &e, &err), MT_E_INPUT);
-        CHECK_STR(t, err.text, rows[i].want);
-        CHECK_INT(t, parse_text(rows[i].text, &mem, &e, NULL), MT_E_INPUT);
-    }
-    mt_arena_free(&mem);
+    expect_problems(t, MT_COUNT(rows), rows);
 }
 
 /* `open` n times, "x", `close` n times */
@@ -405,6 +419,7 @@ MT_TEST_MAIN(MT_TEST(parse__precedence_and_associativity),
              MT_TEST(parse__functions_and_constants_have_their_values),
              MT_TEST(parse__numbers_are_rounded_correctly),
              MT_TEST(parse__problems_are_named_with_their_place),
+             MT_TEST(parse__problems_of_cases_are_named_with_their_place),
              MT_TEST(parse__nesting_is_limited), MT_TEST(parse__length_and_parts_are_limited),
              MT_TEST(parse__names_are_reserved_and_constants_recognised),
              MT_TEST(parse__out_of_memory_is_reported))

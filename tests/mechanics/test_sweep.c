@@ -511,9 +511,9 @@ static void sweep__two_joints_go_a_path_or_over_a_grid(mt_test *t)
         const int n = grid == 1 ? SIDE * SIDE : SIDE;
         double positions[2 * SIDE * SIDE];
         run r = {.model = mech_load(t, "driven_arm")};
-        for (int i = 0; i < n; i++) {
-            positions[2 * i] = -0.5 + 0.4 * (grid == 1 ? i / SIDE : i);
-            positions[2 * i + 1] = 2.0 - 0.9 * (i % SIDE);
+        for (ptrdiff_t i = 0; i < n; i++) {
+            positions[2 * i] = -0.5 + (0.4 * (double)(grid == 1 ? i / SIDE : i));
+            positions[(2 * i) + 1] = 2.0 - (0.9 * (double)(i % SIDE));
         }
         const mt_system_def def = {.model = r.model,
                                    .configuration =
