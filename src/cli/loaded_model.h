@@ -34,7 +34,8 @@ int mt_cli_json_done(mt_json_writer *w);
 typedef struct mt_cli_shown {
     int code; /* exit status */
 } mt_cli_shown;
-/* Shows one configuration; shown->code gets worse where there is more to tell than its failure. */
+/* Shows one configuration; shown->code gets worse where there is more to tell than its
+ * failure. */
 typedef mt_status (*mt_cli_show)(void *context, mt_loaded_model *s, int c, mt_cli_shown *shown,
                                  mt_err *err);
 /* Shows each configuration with the warnings that all commands have; the failure of one does

@@ -205,7 +205,8 @@ void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, dou
 /* Fill terms, pieces and push as well, from the next evaluation on. */
 mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
                                    mt_err *err);
-/* Energy alone. forces: of trimmed springs, NULL: 0; jets: those that are known there serve; NULL: none. */
+/* Energy alone. forces: of trimmed springs, NULL: 0; jets: those that are known there serve;
+ * NULL: none. */
 double mt_energy_value(const mt_data *d, const mt_placement *at, const mt_trim_forces *forces,
                        const mt_jets *jets);
 

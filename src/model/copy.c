@@ -356,7 +356,7 @@ static mt_term product(mt_maker *m, mt_term a, mt_term b)
                                           term_text(m, b, NULL))};
 }
 
-static bool is_zero(mt_term x)
+static bool is_no_term(mt_term x)
 {
     return x.s == NULL && x.v == 0.0;
 }
@@ -366,7 +366,7 @@ static bool plain_sum(int n, const mt_term *factor, const mt_term *x, double *v)
 {
     *v = 0.0;
     for (int i = 0; i < n; i++) {
-        if (is_zero(factor[i]) || is_zero(x[i])) {
+        if (is_no_term(factor[i]) || is_no_term(x[i])) {
             continue;
         }
         if (factor[i].s != NULL || x[i].s != NULL) {
@@ -395,7 +395,7 @@ static mt_term sum_of(mt_maker *m, int n, const mt_term *factor, const mt_term *
     }
     mt_text t = {0};
     for (int i = 0; i < n; i++) {
-        if (is_zero(factor[i]) || is_zero(x[i])) {
+        if (is_no_term(factor[i]) || is_no_term(x[i])) {
             continue;
         }
         const bool number = factor[i].s == NULL;

@@ -18,11 +18,11 @@ typedef struct mt_catalogue {
     mt_name_list names;        /* of rows; count 0: none are given */
     double *tolerance_percent; /* [columns.count] NaN: none; NULL: none is given */
     int n_rows;
-    /* [n_rows x columns.count] as written; NaN: wrong, which is noted, or of a column of texts */
+    /* [n_rows x columns.count] as written; NaN: wrong, which is noted, or a column of texts */
     double *number;
-    bool *text;     /* [columns.count] of a table; NULL: all have numbers */
-    mt_addr *row;   /* [n_rows] addresses */
-    bool wrong;     /* what is wrong has been noted */
+    bool *text;   /* [columns.count] of a table; NULL: all have numbers */
+    mt_addr *row; /* [n_rows] addresses */
+    bool wrong;   /* what is wrong has been noted */
     mt_addr addr;
 } mt_catalogue;
 
