@@ -603,9 +603,9 @@ static mt_status solve_modes(mt_modes_view *v, mt_err *err)
                                        err);
     }
     const bool few = q->damped && q->count > 0 && q->count < INT_MAX / 2;
-    MT_TRY(few ? solve_few_damped(v, &is, why, err)
-               : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l,
-                                        err));
+    MT_TRY(
+        few ? solve_few_damped(v, &is, why, err)
+            : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
     if (v->l != NULL && !is) {
         mt_lowest_delete(v->l);
         v->l = NULL;

@@ -392,12 +392,12 @@ static void set_out(walk *w, int lead)
 {
     const mt_system *const sys = w->sys;
     double longest = -1.0;
-    w->lead = lead;
+    w->lead = lead < 0 ? 0 : lead;
     for (int i = 0; i < sys->n_drives; i++) {
         w->drive[i].from = w->at->drive[i];
         w->drive[i].goal = creal(mt_data_scalar(w->data, sys->drives[i].position, 0.0));
         const double way = fabs(w->drive[i].goal - w->drive[i].from) / drive_unit(sys, i);
-        if (lead < 0 && (w->lead < 0 || !(way <= longest))) {
+        if (lead < 0 && !(way <= longest)) {
             longest = way;
             w->lead = i;
         }

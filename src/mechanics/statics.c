@@ -91,7 +91,7 @@ static mt_cx turned_about(const mt_cx *a, const mt_cx *b, int axis)
 static mt_cx beam_bow(const rest_place *p, int channel, const mt_pose *poses, mt_cx chord[9])
 {
     const mt_channel_def *const c = &p->data->sys->channels[channel];
-    mt_beam_geometry g;
+    mt_beam_geometry g = {.length = 0.0};
     mt_cx row[MT_LOCAL];
     mt_cx bow = 0.0;
     mt_beam_frame(p->data, c->body, c->dir, poses, &g);

@@ -349,8 +349,12 @@ static mt_term product(mt_maker *m, mt_term a, mt_term b)
     }
     const mt_term other = a.s == NULL ? b : a;
     const double v = a.s == NULL ? a.v : b.v;
-    if ((a.s == NULL || b.s == NULL) && (v == 0.0 || v == 1.0)) {
-        return v == 0.0 ? (mt_term){.v = 0.0} : other;
+    const bool one = a.s == NULL || b.s == NULL;
+    if (one && v == 0.0) {
+        return (mt_term){.v = 0.0};
+    }
+    if (one && v == 1.0) {
+        return other;
     }
     return (mt_term){.s = mt_arena_printf(&m->mem, "(%s)*(%s)", term_text(m, a, NULL),
                                           term_text(m, b, NULL))};

@@ -24,8 +24,11 @@ static void read_yields(mt_reader *r, const mt_key *key, mt_addr value, mt_num *
         return;
     }
     if (items.count != wanted) {
-        mt_diag_error(r->diags, value, "a compliance in %s dimensions needs %d here, not %d",
-                      two ? "two" : "three", wanted, items.count);
+        const bool somewhere = items.count >= (turns ? 1 : 2) && items.count <= 3;
+        void (*const say)(mt_diags *, mt_addr, const char *, ...) =
+            somewhere ? mt_diag_error : mt_diag_structure;
+        say(r->diags, value, "a compliance in %s dimensions needs %d here, not %d",
+            two ? "two" : "three", wanted, items.count);
         return;
     }
     for (int k = two && turns ? 2 : 0; mt_items_next(&items); k++) {

@@ -313,6 +313,14 @@ static void read_row(mt_reader *r, mt_catalogue *c, mt_addr value)
         c->wrong = true;
         return;
     }
+    bool sound = true;
+    for (mt_items each = numbers; mt_items_next(&each);) {
+        sound = mt_reader_type(r, each.at, MT_KEY_VALUE) && sound;
+    }
+    if (!sound) {
+        c->wrong = true;
+        return;
+    }
     if (numbers.count != c->columns.count) {
         mt_diag_error(r->diags, value, "%d number%s in this row, and %d columns", numbers.count,
                       numbers.count == 1 ? "" : "s", c->columns.count);
@@ -321,9 +329,7 @@ static void read_row(mt_reader *r, mt_catalogue *c, mt_addr value)
     }
     double *const out = c->number + ((ptrdiff_t)c->n_rows * c->columns.count);
     for (int k = 0; mt_items_next(&numbers); k++) {
-        const bool number = mt_reader_type(r, numbers.at, MT_KEY_VALUE);
-        out[k] = number ? mt_json_number(r->doc, numbers.at) : nan("");
-        c->wrong = c->wrong || !number;
+        out[k] = mt_json_number(r->doc, numbers.at);
     }
     c->row[c->n_rows++] = value;
 }

@@ -244,7 +244,7 @@ static void read_parameters(mt_reader *r, const mt_key *key, mt_addr value, void
         return;
     }
     if (room == 0) {
-        mt_diag_error(r->diags, value, "no parameter is named");
+        mt_diag_structure(r->diags, value, "no parameter is named");
     }
     for (mt_items items = mt_reader_items(r, value); mt_items_next(&items);) {
         const mt_name column = {.s = v->by_order ? NULL : mt_json_name(r->doc, items.at),

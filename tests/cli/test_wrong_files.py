@@ -103,7 +103,7 @@ WRONG = {
     ("goal_limit", "at_most"): [(beyond("at_least", -1), "error", "is not above")],
     "bands_hz": [(lambda v: [[v[0][1], v[0][0]], *v[1:]], "error", "is not above"), (lambda v: [[-1, v[0][1]], *v[1:]], "error", "negative")],
     ("variable", "lower"): [(beyond("upper", 1), "error", "below lower")], ("variable", "upper"): [(beyond("lower", -1), "error", "below lower")],
-    ("variable", "catalogue"): [(lambda v: [*v, v[0]], "error", "twice")],
+    ("variable", "catalogue"): [(lambda v: [*v, v[0]] if isinstance(v, list) else [1, 1], "error", "twice|go with the name")],
     ("parts", "rows"): [(lambda v: [*v[:-1], v[0]], "error", "are the same"), (lambda v: [*v[:-1], v[0][1:]], "error", "in this row")],
     ("parts", "tolerance_percent"): [(lambda v: v[1:], "error", "tolerances for"), (lambda v: [100, *v[1:]], "error", "below 100")],
     ("catalogue", "lower"): [(times(1e6), "error", "is below lower")], ("catalogue", "upper"): [(beyond("lower", -1), "error", "is below lower|must be above")],

@@ -82,9 +82,9 @@ def main():
         checked += 1
         if kind != "result":
             originals.append((path, kind, "as it is", document))
-            # the parameters that a repeat or an include needs are looked for before anything else is read
+            # what a repeat or an include copies is made before anything else is read, and where that fails nothing is
             apart = {"repeat", "include"} & set(document)
-            jobs += [(path, kind, document, *how) for how in changes(document) if not (apart and how[0][:1] == ("parameters",))]
+            jobs += [(path, kind, document, *how) for how in changes(document) if not apart or (how[0][0] in apart and len(how[0]) > 1)]
     step = max(1, len(jobs) // int(os.environ.get("MT_MUTANTS", "15000" if "MT_EVERY" in os.environ else "1500")))  # evenly thinned where there are many
     # a file of another format is not read on: the verdicts agree, but there is nothing to compare
     jobs = originals + [(path, kind, f"{'/'.join(map(str, where))}: {change}", changed(document, where, change))
