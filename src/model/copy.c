@@ -1191,20 +1191,29 @@ bool mt_read_axis(mt_maker *m, const mt_object *o, const char *member, double *u
 
 /* A number or an expression of a list in the document itself, in the unit of its lengths or
  * SI. */
+/* Places and angles of copies are made of these numbers, whose sums must be some, too. */
+static const double MOST_OWN = 1e100;
+
 bool mt_read_own(mt_maker *m, mt_addr value, const mt_unit *unit, mt_term *out)
 {
     mt_expr e;
     double v = 0.0;
     if (mt_json_type_of(m->r.doc, value) == MT_JSON_NUMBER) {
         *out = (mt_term){.v = mt_json_number(m->r.doc, value)};
+        if (!(fabs(out->v) <= MOST_OWN)) {
+            mt_diag_error(m->r.diags, value, "must be from -1e100 to 1e100");
+            return false;
+        }
         return true;
     }
     if (!mt_reader_expr_in(&m->r, value, unit, &e)) {
         return false;
     }
     const char *const s = mt_json_string(m->r.doc, value);
-    *out = mt_expr_is_constant(&e, &v) && isfinite(v) ? (mt_term){.v = mt_unit_from_si(unit, v)}
-                                                      : (mt_term){.s = s};
+    *out = (mt_term){.s = s};
+    if (mt_expr_is_constant(&e, &v) && fabs(v) <= MOST_OWN) {
+        *out = (mt_term){.v = mt_unit_from_si(unit, v)};
+    }
     return true;
 }
 

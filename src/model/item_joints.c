@@ -23,6 +23,14 @@ static void read_yields(mt_reader *r, const mt_key *key, mt_addr value, mt_num *
     if (value == MT_NO_ADDR) {
         return;
     }
+    for (mt_items each = items; mt_items_next(&each);) {
+        const mt_json_type type = mt_json_type_of(r->doc, each.at);
+        if (type != MT_JSON_NUMBER && type != MT_JSON_STRING) {
+            mt_diag_structure(r->diags, each.at,
+                              "must be a number, an expression or \"rigid\"");
+            return;
+        }
+    }
     if (items.count != wanted) {
         const bool somewhere = items.count >= (turns ? 1 : 2) && items.count <= 3;
         void (*const say)(mt_diags *, mt_addr, const char *, ...) =

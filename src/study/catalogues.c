@@ -447,7 +447,7 @@ static void catalogue_finish(mt_reader *r, const mt_object *o, int which, void *
         read_table(mt_study_reader_of(r), c, path);
         free(path);
     } else if (!mt_object_has(r, o, "rows")) {
-        mt_diag_structure(r->diags, c->addr, "\"rows\" is missing");
+        mt_diag_error(r->diags, c->addr, "\"rows\" is missing");
         c->wrong = true;
     }
     c->wrong = c->wrong || mt_object_wrong(r, o);
