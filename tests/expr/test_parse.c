@@ -374,7 +374,8 @@ static void parse__names_are_reserved_and_constants_recognised(mt_test *t)
     CHECK_INT(t, n, 29);
     for (int i = 0; i < n; i++) {
         mt_test_row(t, "%s", names[i]);
-        CHECK(t, mt_expr_reserved(names[i]));
+        /* "if" was free before there were cases, and is one only before a "(" */
+        CHECK(t, mt_expr_reserved(names[i]) == (strcmp(names[i], "if") != 0));
     }
     CHECK(t, !mt_expr_reserved("e") && !mt_expr_reserved("x") && !mt_expr_reserved("sin_"));
 

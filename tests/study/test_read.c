@@ -85,9 +85,10 @@ static void check_variables(mt_test *t, const mt_study *s)
         CHECK_NEAR(t, v[3].tolerance_percent, 1.0, TOL);
     }
     if (CHECK_INT(t, s->n_catalogues, 2) && CHECK_INT(t, s->catalogues[1].n_rows, 2)) {
-        CHECK_STR(t, s->catalogues[1].columns.items[0].s, "mass");
-        CHECK_STR(t, s->catalogues[1].units.items[0].s, "g");
-        CHECK_NEAR(t, s->catalogues[1].number[3], 2.5, TOL);
+        CHECK_STR(t, s->catalogues[1].columns.items[1].s, "mass");
+        CHECK_STR(t, s->catalogues[1].units.items[1].s, "g");
+        CHECK_NEAR(t, s->catalogues[1].number[5], 2.5, TOL);
+        CHECK(t, s->catalogues[1].text[0] && !s->catalogues[1].text[1]);
         CHECK_STR(t, s->catalogues[1].names.items[1].s, "W500");
     }
 }
