@@ -11,6 +11,19 @@ static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
 /*
  * Compliance. Lists have one entry for each of the joint's axes: a number, or "rigid".
  */
+static bool are_yields(mt_reader *r, mt_items items)
+{
+    while (mt_items_next(&items)) {
+        const mt_json_type type = mt_json_type_of(r->doc, items.at);
+        if (type != MT_JSON_NUMBER && type != MT_JSON_STRING) {
+            mt_diag_structure(r->diags, items.at,
+                              "must be a number, an expression or \"rigid\"");
+            return false;
+        }
+    }
+    return true;
+}
+
 static void read_yields(mt_reader *r, const mt_key *key, mt_addr value, mt_num *x, bool turns)
 {
     mt_model_reader *const mr = mt_model_reader_of(r);
@@ -23,13 +36,8 @@ static void read_yields(mt_reader *r, const mt_key *key, mt_addr value, mt_num *
     if (value == MT_NO_ADDR) {
         return;
     }
-    for (mt_items each = items; mt_items_next(&each);) {
-        const mt_json_type type = mt_json_type_of(r->doc, each.at);
-        if (type != MT_JSON_NUMBER && type != MT_JSON_STRING) {
-            mt_diag_structure(r->diags, each.at,
-                              "must be a number, an expression or \"rigid\"");
-            return;
-        }
+    if (!are_yields(r, items)) {
+        return;
     }
     if (items.count != wanted) {
         const bool somewhere = items.count >= (turns ? 1 : 2) && items.count <= 3;
