@@ -141,7 +141,7 @@ class Hunt:
         if done.returncode not in FINE or "runtime error" in done.stderr:
             self.problems.append(f"{where}: {' '.join(args)}: exit status {done.returncode}: {done.stderr[:600]}")
         for text, kind in ((done.stdout, form), (done.stderr, "text")):
-            self.problems += [f"{where}: {' '.join(args)}: {p}" for p in list(problems_of(text, kind))[:3]]
+            self.problems += [f"{where}: {' '.join(args)}: {p}" for p in list(problems_of(text.replace(str(folder), ""), kind))[:3]]
         return done
 
     def answer(self, where, model, question, rng):
@@ -153,7 +153,7 @@ class Hunt:
             if done is None:
                 return
             for path in sorted((top / "results/study").glob("*")) if (top / "results/study").exists() else []:
-                text = path.read_text(encoding="utf-8")
+                text = path.read_text(encoding="utf-8").replace(str(top), "")  # whose name is made by chance
                 self.problems += [f"{where}: {path.name}: {p}" for p in list(problems_of(text, path.suffix[1:]))[:3]]
             self.program(top, where, *rng.choice([("run", "study.json", "--format", "csv", "-o", "again"), ("compare", "study.json")]))
             self.look(where, top, "model.json", rng, 2)
