@@ -595,17 +595,14 @@ static mt_status solve_modes(mt_modes_view *v, mt_err *err)
     const mt_lowest_want want = {.count = q->count, .shapes = q->shapes || q->effective_mass};
     char why[MT_LOWEST_DAMPED_WHY] = "";
     bool is = true;
+    const bool few = q->damped && q->count > 0 && q->count < INT_MAX / 2;
     if (q->energy) {
         MT_TRY(mt_loaded_model_admit_dense(s, v->c, "shares of energy take all modes", err));
-        MT_TRY(mt_loaded_model_analyse(s, v->c, 0, &v->a, err));
-        v->m = &v->a->modes;
-        return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list,
-                                       err);
+    } else {
+        MT_TRY(few ? solve_few_damped(v, &is, why, err)
+                   : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l,
+                                            err));
     }
-    const bool few = q->damped && q->count > 0 && q->count < INT_MAX / 2;
-    MT_TRY(
-        few ? solve_few_damped(v, &is, why, err)
-            : mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
     if (v->l != NULL && !is) {
         mt_lowest_delete(v->l);
         v->l = NULL;
@@ -616,7 +613,8 @@ static mt_status solve_modes(mt_modes_view *v, mt_err *err)
         return mt_warnings_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->warning_list,
                                      err);
     }
-    MT_TRY(mt_loaded_model_analyse(s, v->c, q->damped ? 0 : want.count, &v->a, err));
+    MT_TRY(
+        mt_loaded_model_analyse(s, v->c, q->damped || q->energy ? 0 : want.count, &v->a, err));
     v->m = &v->a->modes;
     return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list, err);
 }

@@ -403,6 +403,20 @@ mt_name_list mt_reader_refs(mt_reader *r, mt_addr value)
     return list;
 }
 
+mt_name_list mt_reader_one_or_refs(mt_reader *r, const mt_key *key, mt_addr value)
+{
+    if (key->type == MT_KEY_LIST) {
+        (void)mt_reader_some_items(r, value, key->what);
+        return mt_reader_refs(r, value);
+    }
+    mt_name *const name = mt_arena_alloc(r->mem, 1, sizeof *name);
+    if (name == NULL) {
+        return (mt_name_list){0};
+    }
+    *name = mt_reader_ref(r, value);
+    return (mt_name_list){name->s == NULL ? 0 : 1, name};
+}
+
 /* "a, b, c" in the reader's arena. */
 static const char *joined(mt_reader *r, const char *const *names, int n)
 {

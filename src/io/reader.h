@@ -197,6 +197,8 @@ typedef enum mt_name_form { MT_NAME_ITEM, MT_NAME_PARAMETER, MT_NAME_TITLE } mt_
 mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form);
 /* A list of strings that refer to something; an absent one gives count 0. */
 mt_name_list mt_reader_refs(mt_reader *r, mt_addr value);
+/* The same of a member that by its key is one string, or a list that is not empty. */
+mt_name_list mt_reader_one_or_refs(mt_reader *r, const mt_key *key, mt_addr value);
 /* The index of the string among n names; MT_ABSENT where absent or none (noted, with "did you
  * mean" and the known ones). what: "type". */
 int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names,

@@ -351,7 +351,7 @@ static mt_status meeting_gap(mt_workspace *w, mt_analysis *a, int low, int high,
 typedef struct two_modes {
     int at[2]; /* lower, higher */
     double hz[2];
-    double sign; /* -1: the first named of them is the lower */
+    bool swapped; /* the first named of them is the lower */
 } two_modes;
 
 /* slope[n]: factor[1] d ln f_higher - factor[0] d ln f_lower. */
@@ -360,7 +360,6 @@ static mt_status apart_slope(mt_workspace *w, const mt_requirement *d, const two
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const double floor_hz = MT_FREQUENCY_FLOOR * m->hz[1];
-    const bool swapped = m->sign < 0.0;
     int size = 1;
     const int first = mt_modal_cluster(&a->modes, m->at[0], &size);
     if (d->named < 0 && d->of.named < 0 && m->at[1] < first + size) {
@@ -370,12 +369,12 @@ static mt_status apart_slope(mt_workspace *w, const mt_requirement *d, const two
         }
         return MT_OK;
     }
-    MT_TRY(dln_of(w, d->view, d->named, m->at[swapped ? 0 : 1], floor_hz, slope, err));
+    MT_TRY(dln_of(w, d->view, d->named, m->at[m->swapped ? 0 : 1], floor_hz, slope, err));
     for (int i = 0; i < w->p->n; i++) {
-        slope[i] *= swapped ? -factor[0] : factor[1];
+        slope[i] *= m->swapped ? -factor[0] : factor[1];
     }
-    return add_other_slope(w, d, m->at[swapped ? 1 : 0], floor_hz,
-                           swapped ? factor[1] : -factor[0], slope, err);
+    return add_other_slope(w, d, m->at[m->swapped ? 1 : 0], floor_hz,
+                           m->swapped ? factor[1] : -factor[0], slope, err);
 }
 
 /* With factors of d ln f: of 100 (g / s - 1) both are 100 g / s, of g - s they are s and g. */
@@ -387,10 +386,10 @@ static mt_status evaluate_apart(mt_workspace *w, const mt_requirement *d, int po
     double of = nan("");
     MT_TRY(find_other(w, d, &pos_of, &of, err));
     const double own = mt_modal_hz(&a->modes, pos);
-    const bool swapped = d->named >= 0 || d->of.named >= 0 ? own < of : false;
+    const bool swapped = (d->named >= 0 || d->of.named >= 0) && own < of;
     const two_modes m = {.at = {swapped ? pos : pos_of, swapped ? pos_of : pos},
                          .hz = {swapped ? own : of, swapped ? of : own},
-                         .sign = swapped ? -1.0 : 1.0};
+                         .swapped = swapped};
     const bool in_hz = MT_HAS(d->goal->at_least_hz);
     const double part = m.hz[0] > 0.0 ? m.hz[1] / m.hz[0] : m.hz[1] > 0.0 ? HUGE_VAL : 1.0;
     *q = in_hz ? m.hz[1] - m.hz[0] : PERCENT * (part - 1.0);

@@ -18,17 +18,7 @@ static const char MOST[] = "most";
 
 static void read_directions(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    mt_energy_goal *const energy = &((mt_goal_parts *)item)->energy;
-    if (key->type == MT_KEY_LIST) {
-        (void)mt_reader_some_items(r, value, key->what);
-        energy->direction_names = mt_reader_refs(r, value);
-        return;
-    }
-    mt_name *const name = mt_arena_alloc(r->mem, 1, sizeof *name);
-    if (name != NULL) {
-        *name = mt_reader_ref(r, value);
-        energy->direction_names = (mt_name_list){name->s == NULL ? 0 : 1, name};
-    }
+    ((mt_goal_parts *)item)->energy.direction_names = mt_reader_one_or_refs(r, key, value);
 }
 
 /* A body or a spring, and what goes with each. */

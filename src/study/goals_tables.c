@@ -8,17 +8,7 @@
 
 void mt_goal_read_configurations(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    mt_goal *const goal = &((mt_goal_parts *)item)->goal;
-    if (key->type == MT_KEY_LIST) {
-        (void)mt_reader_some_items(r, value, key->what);
-        goal->configuration_names = mt_reader_refs(r, value);
-        return;
-    }
-    mt_name *const name = mt_arena_alloc(r->mem, 1, sizeof *name);
-    if (name != NULL) {
-        *name = mt_reader_ref(r, value);
-        goal->configuration_names = (mt_name_list){name->s == NULL ? 0 : 1, name};
-    }
+    ((mt_goal_parts *)item)->goal.configuration_names = mt_reader_one_or_refs(r, key, value);
 }
 
 void mt_goal_check(mt_reader *r, mt_object *o)
